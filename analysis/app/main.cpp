@@ -1,0 +1,6 @@
+#include <cstdio>
+
+int main() {
+  std::puts("eigengrain");
+  return 0;
+}
