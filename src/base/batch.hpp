@@ -1,0 +1,129 @@
+#pragma once
+// Eight doubles at a time, on the vector extensions of g++ and clang: one 512-bit register where the processor has them,
+// else several narrower ones, with the same results. Branches become masks. (std::experimental::simd of libstdc++ 12
+// drops masked assignments under clang 14, so it is not used.)
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#if defined(__AVX512F__) || defined(__AVX__)
+#include <immintrin.h>
+#endif
+
+#include "base/vec.hpp"
+
+namespace eg {
+
+using Double8 = double __attribute__((vector_size(64)));
+using Double4 = double __attribute__((vector_size(32)));
+using Int8 = std::int64_t __attribute__((vector_size(64)));
+
+#define EG_INLINE [[gnu::always_inline]] inline
+
+#if defined(__AVX512F__)
+struct Mask {
+  __mmask8 m;
+  friend EG_INLINE Mask operator&(Mask a, Mask b) { return {static_cast<__mmask8>(a.m & b.m)}; }
+  friend EG_INLINE Mask operator|(Mask a, Mask b) { return {static_cast<__mmask8>(a.m | b.m)}; }
+  friend EG_INLINE Mask operator!(Mask a) { return {static_cast<__mmask8>(~a.m)}; }
+};
+EG_INLINE bool any(Mask a) { return a.m != 0; }
+EG_INLINE bool lane(Mask a, std::size_t k) { return (a.m >> k) & 1; }
+#else
+struct Mask {
+  Int8 m;
+  friend EG_INLINE Mask operator&(Mask a, Mask b) { return {a.m & b.m}; }
+  friend EG_INLINE Mask operator|(Mask a, Mask b) { return {a.m | b.m}; }
+  friend EG_INLINE Mask operator!(Mask a) { return {~a.m}; }
+};
+EG_INLINE bool any(Mask a) {
+  std::int64_t r = 0;
+  for (int k = 0; k < 8; ++k) r |= a.m[k];
+  return r != 0;
+}
+EG_INLINE bool lane(Mask a, std::size_t k) { return a.m[k] != 0; }
+#endif
+
+struct Batch {
+  static constexpr std::size_t lanes = 8;
+  Double8 v;
+
+  Batch() = default;
+  EG_INLINE Batch(double s) : v(Double8{} + s) {}
+  EG_INLINE Batch(Double8 x) : v(x) {}
+  EG_INLINE double operator[](std::size_t k) const { return v[k]; }
+
+  friend EG_INLINE Batch operator+(Batch a, Batch b) { return a.v + b.v; }
+  friend EG_INLINE Batch operator-(Batch a, Batch b) { return a.v - b.v; }
+  friend EG_INLINE Batch operator*(Batch a, Batch b) { return a.v * b.v; }
+  friend EG_INLINE Batch operator/(Batch a, Batch b) { return a.v / b.v; }
+  friend EG_INLINE Batch operator-(Batch a) { return -a.v; }
+#if defined(__AVX512F__)
+  friend EG_INLINE Mask operator<(Batch a, Batch b) { return {_mm512_cmp_pd_mask(a.v, b.v, _CMP_LT_OQ)}; }
+  friend EG_INLINE Mask operator>(Batch a, Batch b) { return {_mm512_cmp_pd_mask(a.v, b.v, _CMP_GT_OQ)}; }
+#else
+  friend EG_INLINE Mask operator<(Batch a, Batch b) { return {a.v < b.v}; }
+  friend EG_INLINE Mask operator>(Batch a, Batch b) { return {a.v > b.v}; }
+#endif
+};
+
+EG_INLINE Batch select(Mask m, Batch yes, Batch no) {
+#if defined(__AVX512F__)
+  return Double8(_mm512_mask_blend_pd(m.m, no.v, yes.v));
+#else
+  return Double8(m.m ? yes.v : no.v);
+#endif
+}
+EG_INLINE Batch max(Batch a, Batch b) { return select(a < b, b, a); }
+EG_INLINE Batch min(Batch a, Batch b) { return select(b < a, b, a); }
+EG_INLINE Batch abs(Batch a) { return max(a, -a); }
+EG_INLINE Batch sqrt(Batch a) {
+#if defined(__AVX512F__)
+  return Double8(_mm512_sqrt_pd(a.v));
+#else
+  Batch r;
+  for (int k = 0; k < 8; ++k) r.v[k] = __builtin_sqrt(a.v[k]);
+  return r;
+#endif
+}
+/// Sum over lanes in a fixed order.
+EG_INLINE double sum(Batch a) {
+  return ((a.v[0] + a.v[1]) + (a.v[2] + a.v[3])) + ((a.v[4] + a.v[5]) + (a.v[6] + a.v[7]));
+}
+EG_INLINE Batch load_lanes(const double* p) { Batch b; __builtin_memcpy(&b.v, p, 64); return b; }
+EG_INLINE void store_lanes(double* p, Batch b) { __builtin_memcpy(p, &b.v, 64); }
+
+/// Rows of eight grains as columns: out[c] holds component c of lanes 0…7.
+struct QuadColumns { Batch x, y, z, w; };
+
+EG_INLINE Double8 join(Double4 a, Double4 b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7); }
+
+/// Transposes eight 4-double rows. `r` are the rows of lanes 0…7.
+EG_INLINE QuadColumns transpose_rows(Double4 r0, Double4 r1, Double4 r2, Double4 r3, Double4 r4, Double4 r5, Double4 r6,
+                                     Double4 r7) {
+  // Each 128-bit part of t holds two components of one lane; order of lanes restored by the second shuffle.
+  const Double8 t0 = join(r0, r4), t1 = join(r1, r5), t2 = join(r2, r6), t3 = join(r3, r7);
+  const Double8 a = __builtin_shufflevector(t0, t1, 0, 8, 2, 10, 4, 12, 6, 14);    // x0 x1 z0 z1 | x4 x5 z4 z5
+  const Double8 b = __builtin_shufflevector(t0, t1, 1, 9, 3, 11, 5, 13, 7, 15);    // y0 y1 w0 w1 | …
+  const Double8 c = __builtin_shufflevector(t2, t3, 0, 8, 2, 10, 4, 12, 6, 14);    // x2 x3 z2 z3 | …
+  const Double8 d = __builtin_shufflevector(t2, t3, 1, 9, 3, 11, 5, 13, 7, 15);
+  return {__builtin_shufflevector(a, c, 0, 1, 8, 9, 4, 5, 12, 13), __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13),
+          __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15), __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15)};
+}
+
+/// The inverse: columns back into eight rows.
+EG_INLINE void transpose_columns(const QuadColumns& q, Double4 (&r)[8]) {
+  const Double8 a = __builtin_shufflevector(q.x.v, q.y.v, 0, 8, 2, 10, 4, 12, 6, 14);   // x0 y0 x2 y2 | x4 y4 x6 y6
+  const Double8 b = __builtin_shufflevector(q.x.v, q.y.v, 1, 9, 3, 11, 5, 13, 7, 15);   // x1 y1 x3 y3 | …
+  const Double8 c = __builtin_shufflevector(q.z.v, q.w.v, 0, 8, 2, 10, 4, 12, 6, 14);   // z0 w0 z2 w2 | …
+  const Double8 d = __builtin_shufflevector(q.z.v, q.w.v, 1, 9, 3, 11, 5, 13, 7, 15);
+  const Double8 p0 = __builtin_shufflevector(a, c, 0, 1, 8, 9, 4, 5, 12, 13);           // row 0 | row 4
+  const Double8 p1 = __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13);           // row 1 | row 5
+  const Double8 p2 = __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15);         // row 2 | row 6
+  const Double8 p3 = __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15);         // row 3 | row 7
+  r[0] = __builtin_shufflevector(p0, p0, 0, 1, 2, 3), r[4] = __builtin_shufflevector(p0, p0, 4, 5, 6, 7);
+  r[1] = __builtin_shufflevector(p1, p1, 0, 1, 2, 3), r[5] = __builtin_shufflevector(p1, p1, 4, 5, 6, 7);
+  r[2] = __builtin_shufflevector(p2, p2, 0, 1, 2, 3), r[6] = __builtin_shufflevector(p2, p2, 4, 5, 6, 7);
+  r[3] = __builtin_shufflevector(p3, p3, 0, 1, 2, 3), r[7] = __builtin_shufflevector(p3, p3, 4, 5, 6, 7);
+}
+
+}  // namespace eg
