@@ -2,18 +2,14 @@
 // Sizes of grains drawn from a grading, and the grading curve of grains at hand.
 #include <array>
 #include <cstddef>
-#include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "base/random.hpp"
+#include "state/grading_preset.hpp"
 #include "state/scene.hpp"
 
 namespace eg {
-
-/// Named gradings: "toyoura", a digitised and so approximate curve of Toyoura sand. Nothing for another name.
-std::optional<Grading> grading_preset(std::string_view name);
 
 /// `count` radii [m] in random order. One radius is drawn from each of `count` equal slices of the distribution by
 /// number, so even a small sample keeps to its grading.
