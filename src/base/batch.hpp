@@ -17,7 +17,7 @@ using Double8 = double __attribute__((vector_size(64)));
 using Double4 = double __attribute__((vector_size(32)));
 using Int8 = std::int64_t __attribute__((vector_size(64)));
 
-#define EG_INLINE [[gnu::always_inline]] inline
+#define EG_INLINE __attribute__((always_inline)) inline
 
 #if defined(__AVX512F__)
 struct Mask {
