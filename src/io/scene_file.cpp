@@ -1,0 +1,304 @@
+#include "io/scene_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "contact/laws.hpp"
+#include "io/stage_reader.hpp"
+#include "io/text_file.hpp"
+#include "io/toml_reader.hpp"
+#include "state/grading_preset.hpp"
+
+namespace eg {
+
+namespace {
+
+constexpr auto required = Need::required;
+using NamedTables = std::vector<std::pair<std::string, TomlReader>>;
+
+std::vector<std::string> material_names(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const auto& m : scene.materials) names.push_back(m.name);
+  return names;
+}
+
+Material read_material(const std::string& name, const TomlReader& t) {
+  Material m;
+  m.name = name;
+  t.number("density", m.density, positive, required);
+  t.number("friction", m.friction, non_negative, required);
+  t.number("shear_modulus", m.shear_modulus, positive);
+  t.number("poisson", m.poisson, open(-1, 0.5));
+  t.number("normal_stiffness", m.normal_stiffness, positive);
+  t.number("shear_stiffness", m.shear_stiffness, non_negative);
+  t.number("effective_modulus", m.effective_modulus, positive);
+  t.number("stiffness_ratio", m.stiffness_ratio, positive);
+  t.finish();
+  return m;
+}
+
+struct Constant {
+  std::string_view key;
+  double Material::*value;
+};
+using Constants = std::array<Constant, 2>;
+
+/// The sets of material constants that a law can work from: each material must give one of them in full.
+std::vector<Constants> alternatives_of(std::string_view law) {
+  if (law == Linear::name)
+    return {{{{"normal_stiffness", &Material::normal_stiffness}, {"shear_stiffness", &Material::shear_stiffness}}},
+            {{{"effective_modulus", &Material::effective_modulus}, {"stiffness_ratio", &Material::stiffness_ratio}}}};
+  return {{{{"shear_modulus", &Material::shear_modulus}, {"poisson", &Material::poisson}}}};
+}
+
+bool given(const Material& m, const Constant& c) { return !std::isnan(m.*c.value); }
+
+/// Number of the set of constants that the material gives; throws when it gives none or several.
+std::size_t constants_given(const Material& m, const TomlReader& t, const std::string& law) {
+  const auto sets = alternatives_of(law);
+  std::size_t found = sets.size();
+  for (std::size_t k = 0; k < sets.size(); ++k) {
+    const auto& [first, second] = sets[k];
+    if (!given(m, first) && !given(m, second)) continue;
+    const auto& any = given(m, first) ? first : second;
+    if (found < sets.size())
+      throw t.error(any.key, fmt::format("contradicts {}", sets[found][0].key), "keep one pair of the two");
+    const auto& lacking = given(m, first) ? second : first;
+    if (!given(m, lacking))
+      throw t.error(any.key, fmt::format("needs {} beside it for the law \"{}\"", lacking.key, law),
+                    fmt::format("add {}", lacking.key));
+    found = k;
+  }
+  if (found < sets.size()) return found;
+  std::string remedy;
+  for (const auto& set : sets)
+    remedy += fmt::format("{}{} and {}", remedy.empty() ? "add " : ", or ", set[0].key, set[1].key);
+  throw t.error("", fmt::format("lacks the constants of the law \"{}\"", law), remedy);
+}
+
+NamedTables read_materials(const TomlReader& top, Scene& scene) {
+  const auto tables = top.table("material", required)->named_tables();
+  if (tables.empty()) throw top.error("material", "holds no material", "add [material.NAME]");
+  for (const auto& [name, t] : tables) scene.materials.push_back(read_material(name, t));
+  return tables;
+}
+
+void read_contact(const TomlReader& t, const NamedTables& materials, Scene& scene) {
+  t.choice("law", scene.contact.law, law_names(), required);
+  t.choice("arms", scene.contact.arms, {"overlap", "radius"});
+  t.finish();
+  std::size_t set_of_first = 0;
+  for (std::size_t k = 0; k < materials.size(); ++k) {
+    const auto& table = materials[k].second;
+    const auto set = constants_given(scene.materials[k], table, scene.contact.law);
+    if (k == 0) set_of_first = set;
+    if (set != set_of_first)
+      throw table.error("", fmt::format("gives other constants than material.{}", materials[0].first),
+                        "describe all materials by the same constants");
+  }
+}
+
+void check_passing(const TomlReader& t, const Grading& g) {
+  if (g.passing.size() < 2) throw t.error("passing", "must hold at least two rows [diameter, passing]");
+  for (std::size_t k = 0; k < g.passing.size(); ++k) {
+    const auto [d, p] = g.passing[k];
+    if (d <= 0) throw t.error("passing", fmt::format("has the diameter {} in row {}, which must be > 0", d, k + 1));
+    if (k > 0 && (d <= g.passing[k - 1][0] || p < g.passing[k - 1][1]))
+      throw t.error("passing", fmt::format("must ascend in diameter and in passing, but row {} does not", k + 1));
+  }
+  if (g.passing.front()[1] != 0 || g.passing.back()[1] != 1)
+    throw t.error("passing", "must run from passing 0 to passing 1", "write fractions of the mass, not per cent");
+}
+
+Grading read_grading(const TomlReader& specimen) {
+  if (specimen.is_text("grading")) {
+    std::string name;
+    specimen.choice("grading", name, grading_preset_names());
+    return *grading_preset(name);
+  }
+  const auto t = *specimen.table("grading", required);
+  Grading g;
+  if (t.pairs("passing", g.passing)) {
+    check_passing(t, g);
+    g.kind = Grading::Kind::table;
+    g.min_radius = g.passing.front()[0] / 2, g.max_radius = g.passing.back()[0] / 2;
+  } else if (t.number("radius", g.min_radius, positive)) {
+    g.kind = Grading::Kind::single;
+    g.max_radius = g.min_radius;
+  } else {
+    g.kind = Grading::Kind::uniform;
+    t.number("min_radius", g.min_radius, positive, required);
+    t.number("max_radius", g.max_radius, positive, required);
+    if (g.max_radius < g.min_radius) throw t.error("max_radius", "must not be below min_radius");
+  }
+  t.finish();
+  return g;
+}
+
+void read_lattice(const TomlReader& t, int dimension, SpecimenSpec& s) {
+  const std::vector<std::string> plane{"square", "hexagonal"}, space{"sc", "bcc", "fcc", "hcp"};
+  t.text("lattice", s.lattice, required);
+  const auto& other = dimension == 2 ? space : plane;
+  if (std::ranges::find(other, s.lattice) != other.end())
+    throw t.error("lattice", fmt::format("is a lattice of {} dimensions", dimension == 2 ? 3 : 2),
+                  fmt::format("set dimension = {}", dimension == 2 ? 3 : 2));
+  t.choice("lattice", s.lattice, dimension == 2 ? plane : space);
+
+  std::array<double, 3> cells{4, 4, dimension == 3 ? 4. : 1.};
+  const auto axes = static_cast<std::size_t>(dimension);
+  t.numbers("cells", std::span(cells).first(axes), closed(1, 100000));
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (cells[k] != std::floor(cells[k])) throw t.error("cells", "must hold whole numbers");
+    s.cells[k] = static_cast<int>(cells[k]);
+  }
+  if (cells[0] * cells[1] * cells[2] > 5e8) throw t.error("cells", "make more than 500 million cells");
+
+  t.number("radius", s.radius, positive, required);
+  const bool overlap = t.number("overlap", s.overlap, from_below(0, 0.5));
+  if (t.number("pressure", s.pressure, positive) && overlap)
+    throw t.error("pressure", "contradicts overlap", "keep one of the two");
+  t.number("radius_scatter", s.radius_scatter, closed(0, 0.33));
+}
+
+void read_cloud(const TomlReader& t, int dimension, SpecimenSpec& s) {
+  t.integer("count", s.count, closed(1, 4e9), required);
+  s.grading = read_grading(t);
+  t.number("solid_fraction", s.solid_fraction, open(0, 0.7));
+  t.numbers("aspect", std::span(s.aspect).first(static_cast<std::size_t>(dimension)), positive);
+}
+
+void read_specimen(const TomlReader& t, int dimension, SpecimenSpec& s) {
+  using Source = SpecimenSpec::Source;
+  t.choice<Source>("source", s.source, {{"lattice", Source::lattice}, {"cloud", Source::cloud}, {"file", Source::file}},
+                   required);
+  switch (s.source) {
+    case Source::lattice:
+      read_lattice(t, dimension, s);
+      break;
+    case Source::cloud:
+      read_cloud(t, dimension, s);
+      break;
+    case Source::file:
+      t.text("path", s.path, required);
+      break;
+  }
+  t.finish();
+}
+
+/// A vector of the scene's dimension; the third component of a 2D one is 0.
+bool read_vector(const TomlReader& t, std::string_view key, int dimension, Vec3& out, Need need = Need::optional) {
+  std::array<double, 3> x{};
+  if (!t.numbers(key, std::span(x).first(static_cast<std::size_t>(dimension)), any_number, need)) return false;
+  out = {x[0], x[1], x[2]};
+  return true;
+}
+
+WallSpec read_wall(const TomlReader& t, const Scene& scene) {
+  WallSpec wall;
+  t.name("name", wall.name, required);
+  read_vector(t, "point", scene.dimension, wall.point, required);
+  read_vector(t, "normal", scene.dimension, wall.normal, required);
+  const double length = norm(wall.normal);
+  if (!(length > 0) || !std::isfinite(length)) throw t.error("normal", "must have a length above 0");
+  wall.normal *= 1 / length;
+  read_vector(t, "velocity", scene.dimension, wall.velocity);
+  wall.material = scene.materials[0].name;
+  t.choice("material", wall.material, material_names(scene), scene.materials.size() > 1 ? required : Need::optional);
+  t.finish();
+  return wall;
+}
+
+void read_boundary(const TomlReader& t, Scene& scene) {
+  using Kind = BoundarySpec::Kind;
+  auto& b = scene.boundary;
+  t.choice<Kind>("type", b.kind, {{"periodic", Kind::periodic}, {"free", Kind::free}, {"box", Kind::box}}, required);
+  if (b.kind == Kind::box) {
+    b.wall_material = scene.materials[0].name;
+    t.choice("wall_material", b.wall_material, material_names(scene),
+             scene.materials.size() > 1 ? required : Need::optional);
+  }
+  if (b.kind == Kind::periodic && t.has("wall"))
+    throw t.error("wall", "cannot stand in a cell that is periodic in every direction",
+                  "set boundary.type to \"free\" or \"box\"");
+  for (const auto& wall : t.tables("wall")) {
+    b.walls.push_back(read_wall(wall, scene));
+    for (std::size_t k = 0; k + 1 < b.walls.size(); ++k)
+      if (b.walls[k].name == b.walls.back().name) throw wall.error("name", "is the name of another wall already");
+  }
+  t.finish();
+}
+
+void read_damping(const TomlReader& t, DampingSpec& d) {
+  t.number("local", d.local, from_below(0, 1));
+  t.number("mass", d.mass, non_negative);
+  t.number("normal_ratio", d.normal_ratio, non_negative);
+  t.number("shear_ratio", d.shear_ratio, non_negative);
+  t.finish();
+}
+
+void read_timestep(const TomlReader& t, TimestepSpec& s) {
+  constexpr std::string_view estimate = "estimate:";
+  t.text("policy", s.policy);
+  if (!s.policy.starts_with(estimate) || s.policy.size() == estimate.size())
+    t.choice("policy", s.policy, {"certified", "fixed", "estimate:NAME"});
+  const bool fixed = s.policy == "fixed";
+  t.number("fixed", s.fixed, positive, fixed ? required : Need::optional);
+  if (!fixed && t.has("fixed")) throw t.error("fixed", "is read with policy = \"fixed\" only", "remove one of the two");
+  t.number("safety", s.safety, above_up_to(0, 1));
+  t.finish();
+}
+
+void read_stages(const TomlReader& top, Scene& scene) {
+  for (const auto& t : top.tables("stage")) {
+    scene.stages.push_back(read_stage(t, scene));
+    for (std::size_t k = 0; k + 1 < scene.stages.size(); ++k)
+      if (scene.stages[k].name == scene.stages.back().name)
+        throw t.error("name", "is the name of another stage already", "give every stage a name of its own");
+  }
+}
+
+void read_top(const TomlReader& top, Scene& scene) {
+  top.text("title", scene.title);
+  top.integer("dimension", scene.dimension, closed(2, 3), required);
+  top.flag("rotation", scene.rotation);
+  top.integer("seed", scene.seed, closed(0, 0x1p53 - 1));
+  read_vector(top, "gravity", scene.dimension, scene.gravity);
+  const auto materials = read_materials(top, scene);
+  read_contact(*top.table("contact", required), materials, scene);
+  read_specimen(*top.table("specimen", required), scene.dimension, scene.specimen);
+  read_boundary(*top.table("boundary", required), scene);
+  if (const auto t = top.table("damping")) read_damping(*t, scene.damping);
+  if (const auto t = top.table("timestep")) read_timestep(*t, scene.timestep);
+  if (const auto t = top.table("record")) {
+    t->flag("energy", scene.energy);
+    t->finish();
+  }
+  read_stages(top, scene);
+  top.finish();
+}
+
+}  // namespace
+
+Scene parse_scene(std::string_view text, const std::string& file) {
+  Scene scene;
+  scene.file = file;
+  scene.text = text;
+  try {
+    const toml::table table = toml::parse(text, file);
+    if (table.empty()) throw input_error(file, 0, "is an empty scene:", "it holds no keys", "see cases/ for examples");
+    read_top(TomlReader(table, file, ""), scene);
+  } catch (const toml::parse_error& e) {
+    throw one_line_error(file, static_cast<long>(e.source().begin.line), "is not valid TOML:", e.description());
+  }
+  return scene;
+}
+
+Scene read_scene(const std::string& path) { return parse_scene(read_file(path), path); }
+
+std::string resolve_path(const Scene& scene, const std::string& path) {
+  return (std::filesystem::path(scene.file).parent_path() / path).string();
+}
+
+}  // namespace eg

@@ -1,0 +1,11 @@
+#pragma once
+// [[stage]] of a scene file. Private to the scene reader.
+#include "io/toml_reader.hpp"
+#include "state/scene.hpp"
+
+namespace eg {
+
+/// Reads one stage. Of the scene only dimension and boundary are looked at: they must be read before.
+StageSpec read_stage(const TomlReader&, const Scene&);
+
+}  // namespace eg
