@@ -1,0 +1,127 @@
+#include "specimen/make_state.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "base/error.hpp"
+#include "specimen/lattice.hpp"
+
+namespace eg {
+
+namespace {
+
+void check(const Scene& scene, const Packing& packing) {
+  const auto fail = [&](std::string_view subject, std::string_view rule, std::string_view remedy = {}) {
+    throw input_error(scene.file, 0, subject, rule, remedy);
+  };
+  if (packing.size() == 0) fail("specimen", "has no grains");
+  if (packing.size() >= no_index) fail("specimen", fmt::format("has more than {} grains", no_index - 1));
+  if (packing.dimension != scene.dimension)
+    fail(fmt::format("dimension = {}", scene.dimension), fmt::format("but the packing has {}", packing.dimension));
+  if (scene.materials.empty() || !(scene.materials[0].density > 0))
+    fail("density of the grains", "must be positive", "give density in [material.*]");
+
+  const auto [low, high] = std::minmax_element(packing.radius.begin(), packing.radius.end());
+  if (!(*low > 0)) fail(fmt::format("a grain of radius {:g} m", *low), "is in the packing", "radii must be positive");
+  if (scene.boundary.kind == BoundarySpec::Kind::free) return;
+  for (int k = 0; k < packing.dimension; ++k)
+    if (packing.box[k] < 2 * *high * (1 - largest_lattice_overlap))
+      fail(fmt::format("box edge {} = {:g} m", "xyz"[k], packing.box[k]),
+           fmt::format("is narrower than the largest grain, {:g} m", 2 * *high), "take more grains or a larger box");
+}
+
+void check_inside(const Scene& scene, const Packing& packing) {
+  for (std::size_t i = 0; i < packing.size(); ++i)
+    for (int k = 0; k < packing.dimension; ++k)
+      if (const double x = packing.position[i][k]; !(x >= 0 && x <= packing.box[k]))
+        throw input_error(scene.file, 0, fmt::format("grain {}", i + 1),
+                          fmt::format("has {} = {:g} m, outside the box [0, {:g}]", "xyz"[k], x, packing.box[k]),
+                          "take boundary type \"periodic\" or \"free\", or move the grain");
+}
+
+std::uint16_t material_index(const Scene& scene, const std::string& name) {
+  const auto found =
+      std::find_if(scene.materials.begin(), scene.materials.end(), [&](const Material& m) { return m.name == name; });
+  if (found == scene.materials.end())
+    throw input_error(scene.file, 0, fmt::format("wall material \"{}\"", name), "is not a material of the scene",
+                      fmt::format("add [material.{}]", name));
+  return static_cast<std::uint16_t>(found - scene.materials.begin());
+}
+
+std::vector<Wall> make_walls(const Scene& scene, const Packing& packing) {
+  std::vector<Wall> walls;
+  if (scene.boundary.kind == BoundarySpec::Kind::box) {
+    const auto material = material_index(scene, scene.boundary.wall_material);
+    for (int k = 0; k < packing.dimension; ++k) {
+      Wall lower, upper;
+      lower.material = upper.material = material;
+      lower.normal[k] = 1, upper.normal[k] = -1;
+      upper.point[k] = packing.box[k];
+      walls.push_back(lower), walls.push_back(upper);
+    }
+  }
+  for (const auto& spec : scene.boundary.walls) {
+    Wall wall;
+    wall.point = spec.point;
+    wall.normal = (1 / norm(spec.normal)) * spec.normal;
+    wall.velocity = spec.velocity;
+    wall.material = material_index(scene, spec.material);
+    walls.push_back(wall);
+  }
+  return walls;
+}
+
+Cell make_cell(const Scene& scene, const Packing& packing) {
+  Cell cell;
+  for (int k = 0; k < packing.dimension; ++k) cell.h(k, k) = packing.box[k];
+  const bool periodic = scene.boundary.kind == BoundarySpec::Kind::periodic;
+  cell.periodic = {periodic, periodic, periodic && packing.dimension == 3};
+  return cell;
+}
+
+Grains make_grains(const Scene& scene, const Packing& packing, const Cell& cell) {
+  Grains grains;
+  grains.id.resize(packing.size());
+  std::iota(grains.id.begin(), grains.id.end(), Index{1});
+  for (std::size_t i = 0; i < packing.size(); ++i) {
+    Vec3 x = packing.position[i];
+    for (int k = 0; k < packing.dimension; ++k)
+      if (cell.periodic[static_cast<std::size_t>(k)]) {
+        x[k] -= packing.box[k] * std::floor(x[k] / packing.box[k]);
+        if (x[k] >= packing.box[k]) x[k] = 0;  // round-off of a tiny negative coordinate
+      }
+    const double radius = packing.radius[i];
+    const auto [mass, inertia] = grain_mass(scene.dimension, scene.materials[0].density, radius);
+    grains.position.push_back({x.x, x.y, x.z, radius});
+    grains.velocity.push_back({0, 0, 0, 1 / mass});
+    if (scene.rotation) grains.spin.push_back({0, 0, 0, 1 / inertia});
+  }
+  return grains;
+}
+
+}  // namespace
+
+GrainMass grain_mass(int dimension, double density, double radius) {
+  const double square = radius * radius;
+  const double mass = density * std::numbers::pi * square * (dimension == 3 ? 4 * radius / 3 : 1.0);
+  return {mass, (dimension == 3 ? 0.4 : 0.5) * mass * square};
+}
+
+State make_state(const Scene& scene, const Packing& packing) {
+  check(scene, packing);
+  if (scene.boundary.kind == BoundarySpec::Kind::box) check_inside(scene, packing);
+  State state;
+  state.dimension = scene.dimension;
+  state.cell = make_cell(scene, packing);
+  state.stage_cell = state.cell.h;
+  state.grains = make_grains(scene, packing, state.cell);
+  state.walls = make_walls(scene, packing);
+  for (const auto& material : scene.materials) state.friction.push_back(material.friction);
+  return state;
+}
+
+}  // namespace eg
