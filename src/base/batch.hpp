@@ -78,7 +78,7 @@ EG_INLINE Batch min(Batch a, Batch b) { return select(b < a, b, a); }
 EG_INLINE Batch abs(Batch a) { return max(a, -a); }
 EG_INLINE Batch sqrt(Batch a) {
 #if defined(__AVX512F__)
-  return Double8(_mm512_sqrt_pd(a.v));
+  return Double8(_mm512_maskz_sqrt_pd(0xff, a.v));  // the unmasked form draws false warnings from g++ 12
 #else
   Batch r;
   for (int k = 0; k < 8; ++k) r.v[k] = __builtin_sqrt(a.v[k]);

@@ -33,6 +33,7 @@ struct HertzMindlinLaw {
     const S ea = p.e_star * a;
     return {S(4.0 / 3.0) * ea * overlap, S(2.0) * ea, S(8.0) * p.g_star * a};
   }
+  static double normal_energy(const Pair<double>& p, double overlap) { return 0.4 * normal<double>(p, overlap).force * overlap; }
 
   template <class S>
   EG_INLINE static Response<S> respond(const Pair<S>& p, const Strain<S>& strain, std::array<S, 3 + history_scalars>& h) {

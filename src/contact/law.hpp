@@ -37,6 +37,7 @@ struct Response {
 /// - Constants<S>: what two materials give, all of type S, independent of radii; constants(a, b, dimension) makes them;
 /// - Pair<S>: constants of one contact, made of Constants and radii (a wall has radius infinity);
 /// - normal(pair, overlap) for overlap ≥ 0, zero force at 0;
+/// - normal_energy(pair, overlap): the work of N from 0 to overlap [J];
 /// - respond(pair, strain, history): new forces; history goes in and comes out.
 template <class L>
 concept ContactLaw = requires(const Material& m, const typename L::template Constants<double>& c,
@@ -46,6 +47,7 @@ concept ContactLaw = requires(const Material& m, const typename L::template Cons
   { L::constants(m, m, 3) } -> std::same_as<typename L::template Constants<double>>;
   { L::template pair<double>(c, x, x) } -> std::same_as<typename L::template Pair<double>>;
   { L::template normal<double>(p, x) } -> std::same_as<NormalResponse<double>>;
+  { L::normal_energy(p, x) } -> std::same_as<double>;
   { L::template respond<double>(p, s, h) } -> std::same_as<Response<double>>;
 };
 
@@ -84,6 +86,7 @@ struct Frictionless {
     n.tangential = S(0.0);
     return n;
   }
+  static double normal_energy(const Pair<double>& p, double overlap) { return Law::normal_energy(p, overlap); }
   template <class S> EG_INLINE static Response<S> respond(const Pair<S>& p, const Strain<S>& s, std::array<S, 0>&) {
     return {normal<S>(p, s.overlap), {S(0.0), S(0.0), S(0.0)}, {S(0.0), S(0.0), S(0.0)}};
   }

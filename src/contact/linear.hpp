@@ -45,6 +45,7 @@ struct Linear {
   template <class S> EG_INLINE static NormalResponse<S> normal(const Pair<S>& p, const S& overlap) {
     return {p.kn * overlap, p.kn, p.ks};
   }
+  static double normal_energy(const Pair<double>& p, double overlap) { return 0.5 * p.kn * overlap * overlap; }
 
   template <class S> EG_INLINE static Response<S> respond(const Pair<S>& p, const Strain<S>& strain, std::array<S, 3>& h) {
     const auto n = normal<S>(p, strain.overlap);

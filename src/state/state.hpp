@@ -7,6 +7,7 @@
 
 #include "base/vec.hpp"
 #include "state/cell.hpp"
+#include "state/list.hpp"
 
 namespace eg {
 
@@ -24,28 +25,25 @@ struct Grains {
   std::uint16_t material_of(std::size_t i) const { return material.empty() ? std::uint16_t{0} : material[i]; }
 };
 
-/// Pairs that touch, or may touch before the next list update, with their history. Sorted by i, then j, then image.
+/// Pairs that touch, or may touch before the next refresh of the list, with their history. Sorted by i, then j, then image.
 /// The branch vector of a pair is x_j + cell.shift(image) − x_i; one pair may be i == j through an image of itself.
+/// Grains are taken in chunks of `chunk`; the contacts of a chunk (those whose i lies in it) are padded to whole blocks of
+/// `lanes` by entries with i == j in the home image. Loop over contacts with is_padding() in mind.
 struct Contacts {
-  static constexpr std::size_t lanes = 8;  ///< history is stored in blocks [value][lane] of eight contacts
+  static constexpr std::size_t lanes = 8, chunk = 1024;
   std::vector<Index> i, j;
   std::vector<std::uint8_t> image;       ///< code of Cell::shift; empty when no direction is periodic
-  std::vector<double> history;           ///< history_size values a contact; first three are the shear vector [N] on i
-  std::size_t history_size = 0;
+  std::vector<double> history;           ///< blocks [value][lane] of eight contacts; vectors first (shear force on i [N])
+  std::vector<std::uint64_t> chunk_begin;///< contacts of chunk k: [chunk_begin[k], chunk_begin[k+1]), multiples of `lanes`
+  std::size_t history_size = 0;          ///< values a contact, fixed by the law
+  std::size_t history_vectors = 0;       ///< how many 3-vectors lead them
 
   std::size_t size() const { return i.size(); }
-  double& history_at(std::size_t c, std::size_t k) {
-    return history[(c / lanes * history_size + k) * lanes + c % lanes];
-  }
+  std::uint8_t image_of(std::size_t c) const { return image.empty() ? Cell::home : image[c]; }
+  bool is_padding(std::size_t c) const { return i[c] == j[c] && image_of(c) == Cell::home; }
+  double& history_at(std::size_t c, std::size_t k) { return history[(c / lanes * history_size + k) * lanes + c % lanes]; }
   double history_at(std::size_t c, std::size_t k) const {
     return history[(c / lanes * history_size + k) * lanes + c % lanes];
-  }
-  std::uint8_t image_of(std::size_t c) const { return image.empty() ? Cell::home : image[c]; }
-  /// Resizes to n contacts; history of new contacts is zero.
-  void resize(std::size_t n, bool periodic) {
-    i.resize(n), j.resize(n);
-    image.resize(periodic ? n : 0);
-    history.resize((n + lanes - 1) / lanes * lanes * history_size);
   }
 };
 
@@ -55,6 +53,7 @@ struct Wall {
   Vec3 velocity;                         ///< [m/s]
   std::uint16_t material = 0;
   Vec3 force;                            ///< force of the grains on the wall in the last step [N]
+  double moved = 0;                      ///< path along the normal since contacts were last refreshed [m]
   double work = 0;                       ///< work done by the wall on the grains so far [J]
 };
 
@@ -80,8 +79,11 @@ struct State {
   Cell cell;
   Grains grains;
   Contacts contacts;
+  NeighbourList list;
   std::vector<Wall> walls;
   std::vector<WallContact> wall_contacts;
+  Mat3 virial;                  ///< Σ f ⊗ branch over contacts of the last step, f on j [J]; stress is virial/volume
+  double stiffness_sum = 0;     ///< Σ kn d² over contacts of the last step [J]
   EnergyLedger ledger;
   std::vector<double> friction; ///< µ in force per material (a stage may have replaced the scene's)
   std::size_t stage = 0;        ///< stage under way, and the state it began from

@@ -1,0 +1,129 @@
+#pragma once
+// From positions and motions of two grains to the force between them: the one function that the force loop (double,
+// Batch), the assembler (Dual) and the measures share. Contact force on j: f = N n − T, on i: −f; moments about the
+// centres: a_i n × T on i, a_j n × T on j.
+#include "contact/law.hpp"
+
+namespace eg {
+
+template <class S>
+struct Geometry {
+  Vec<S> n;            ///< unit, from i to j
+  S overlap;           ///< δ [m], > 0 when touching
+  S arm_i, arm_j;      ///< distance of the contact point from each centre [m]
+};
+
+/// How far along the branch the contact point lies. `middle`: the middle of the overlap, a = R − δ/2, so that the arms sum
+/// to the branch length and rigid rotation moves no contact. `surface`: a = R, as the gran/* styles of LAMMPS.
+enum class Arms { middle, surface };
+
+/// `branch`: x_j − x_i [m]. Two grains at one point have n = 0, so no force direction; the caller's checks catch that.
+template <class S>
+EG_INLINE Geometry<S> grain_grain(const Vec<S>& branch, const S& ri, const S& rj, Arms arms) {
+  const S d2 = dot(branch, branch);
+  const S distance = sqrt(max(d2, S(1e-300)));
+  const S overlap = ri + rj - distance;
+  const S shorten = arms == Arms::middle ? S(0.5) * overlap : S(0.0);
+  return {branch * (S(1.0) / distance), overlap, ri - shorten, rj - shorten};
+}
+
+/// `height`: signed distance of the centre from the plane [m]; `inward`: the plane's normal, pointing to the grains.
+template <class S>
+EG_INLINE Geometry<S> grain_plane(const S& height, const Vec<S>& inward, const S& radius, Arms arms) {
+  const S overlap = radius - height;
+  const S shorten = arms == Arms::middle ? S(0.5) * overlap : S(0.0);
+  return {-inward, overlap, radius - shorten, S(0.0)};
+}
+
+/// Motion of both sides during the last increment.
+template <class S>
+struct Motion {
+  Vec<S> translation;          ///< u_j − u_i [m], with the affine part of a deforming cell
+  Vec<S> rotation_i, rotation_j;  ///< θ [rad]
+};
+
+template <class S>
+struct Increment {
+  S approach;                  ///< increase of overlap by the motion [m]
+  Vec<S> slip;                 ///< tangential [m]
+  S twist;                     ///< mean rotation of both sides about n [rad]
+};
+
+/// Δ = u_j − u_i − (a_i θ_i + a_j θ_j) × n, split along and across n.
+template <bool rotation, class S>
+EG_INLINE Increment<S> increment(const Geometry<S>& g, const Motion<S>& m) {
+  const S along = dot(m.translation, g.n);
+  Vec<S> slip = m.translation - g.n * along;
+  if constexpr (rotation) {
+    slip -= cross(m.rotation_i * g.arm_i + m.rotation_j * g.arm_j, g.n);
+    return {-along, slip, S(0.5) * dot(m.rotation_i + m.rotation_j, g.n)};
+  } else {
+    return {-along, slip, S(0.0)};
+  }
+}
+
+/// Turns a stored vector of the contact plane into the new plane, with the common spin about n, keeping its length.
+template <class S>
+EG_INLINE Vec<S> turn(const Vec<S>& old, const Vec<S>& n, const S& twist) {
+  const S out = dot(old, n);
+  Vec<S> turned = old - n * out;
+  turned += cross(n, turned) * twist;
+  const S before = dot(old, old), after = dot(turned, turned);
+  return turned * select(after > S(0.0), sqrt(before / max(after, S(1e-300))), S(0.0));
+}
+
+/// Contact dashpots: ratio ξ of critical damping of the pair, 2ξ√(m* k); zero is off.
+template <class S>
+struct Dashpot {
+  S normal_ratio{}, shear_ratio{};  ///< ξn, ξs [-]
+  S mass{};                         ///< m* = 1/(1/m_i + 1/m_j) [kg]
+  S per_dt{};                       ///< 1/Δt of the increment [1/s]
+};
+
+template <class S>
+struct ContactForce {
+  Vec<S> on_j;                 ///< f [N]
+  Vec<S> moment;               ///< n × T [N]; times the arm: moment on each grain
+  Response<S> law;             ///< the law's own part, without dashpots
+  Vec<S> shear_before;         ///< T of the last step, turned into the new plane [N]
+  S viscous_work;              ///< dissipated by the dashpots in the increment [J]
+};
+
+/// Force of one contact. `touching` masks lanes that overlap; history of the others is cleared.
+template <class Law, bool damped, class S, class M>
+EG_INLINE ContactForce<S> interact(const typename Law::template Pair<S>& pair, const Geometry<S>& g, const Increment<S>& inc,
+                                   M touching, History<Law, S>& history, const Dashpot<S>& dashpot) {
+  Strain<S> strain{select(touching, g.overlap, S(0.0)), inc.slip};
+  for (std::size_t k = 0; k < Law::history_vectors; ++k)
+    set_history_vector(history, k, turn(history_vector(history, k), g.n, inc.twist));
+  ContactForce<S> out;
+  if constexpr (Law::history_vectors > 0) out.shear_before = history_vector(history, 0);
+  out.law = Law::template respond<S>(pair, strain, history);
+  for (auto& h : history) h = select(touching, h, S(0.0));
+
+  S normal = out.law.normal.force;
+  Vec<S> shear = out.law.shear;
+  out.viscous_work = S(0.0);
+  if constexpr (damped) {
+    const S cn = S(2.0) * dashpot.normal_ratio * sqrt(dashpot.mass * out.law.normal.stiffness) * dashpot.per_dt;
+    const S fn = select(touching, cn * inc.approach, S(0.0));
+    normal = normal + fn;
+    out.viscous_work = fn * inc.approach;
+    if constexpr (Law::history_vectors > 0) {  // a sliding contact has no shear dashpot, or it would exceed Coulomb's limit
+      const Vec<S> lost = out.law.unslipped - out.law.shear;
+      const S cs = S(2.0) * dashpot.shear_ratio * sqrt(dashpot.mass * out.law.normal.tangential) * dashpot.per_dt;
+      const S stick = select(dot(lost, lost) > S(0.0), S(0.0), cs);
+      const Vec<S> fs = inc.slip * select(touching, stick, S(0.0));
+      shear += fs;
+      out.viscous_work = out.viscous_work + dot(fs, inc.slip);
+    }
+  }
+  out.on_j = g.n * normal;
+  if constexpr (Law::history_vectors > 0) {
+    out.on_j -= shear;
+    out.moment = cross(g.n, shear);
+  }
+  return out;
+}
+
+}  // namespace eg

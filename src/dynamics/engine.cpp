@@ -1,0 +1,88 @@
+#include "dynamics/engine.hpp"
+
+#include <algorithm>
+
+#include "search/neighbours.hpp"
+#include "state/gather.hpp"
+
+namespace eg {
+
+Engine::Engine(const Scene& scene, State& state, bool scalar) : scene_(scene), state_(state) {
+  if (state_.friction.empty())
+    for (const auto& m : scene.materials) state_.friction.push_back(m.friction);
+  bool frictionless = true;
+  for (const auto& m : scene.materials) frictionless = frictionless && m.friction == 0;
+  for (const auto& s : scene.stages) frictionless = frictionless && s.friction.value_or(0) == 0;
+  loop_ = make_force_loop(scene.contact.law, frictionless, state_.grains.rotates());
+  loop_->set_materials(scene.materials, state_.friction, scene.dimension);
+  options_ = {arms_of(scene), scene.damping.normal_ratio, scene.damping.shear_ratio, true, scalar};
+  kick_ = {scene.damping.local, scene.damping.mass, scene.gravity, scene.dimension};
+  last_dt_ = state_.dt;
+  if (!state_.list.begin.empty()) {  // resumed
+    refresh_workspace();
+    return;
+  }
+  state_.contacts.history_size = loop_->history_size();
+  state_.contacts.history_vectors = loop_->history_vectors();
+  const auto [skin, contact_skin] = default_skins(state_);
+  rebuild_neighbours(state_, skin, contact_skin);
+  refresh_workspace();
+  forces(0, true);
+}
+
+void Engine::refresh_workspace() { prepare(work_, state_); }
+
+void Engine::set_friction(const std::vector<double>& friction) {
+  state_.friction = friction;
+  loop_->set_materials(scene_.materials, friction, scene_.dimension);
+}
+
+void Engine::forces(double dt, bool tally) {
+  options_.tally = tally;
+  const Mat3 virial_before = state_.virial;
+  double wall_power = 0;
+  for (const auto& w : state_.walls) wall_power -= 0.5 * dot(w.force, w.velocity);
+  Tally now = loop_->contacts(state_, work_, dt, options_);
+  const Mat3 virial = now.virial;
+  if (!state_.walls.empty()) now += loop_->walls(state_, work_, dt, options_);
+  if (!tally) return;
+  tally_ = now;
+  state_.virial = virial;
+  state_.stiffness_sum = tally_.stiffness_sum;
+  auto& e = state_.ledger;
+  e.shear_work += tally_.shear_work, e.friction += tally_.friction, e.viscous_damping += tally_.viscous;
+  for (std::size_t k = 0; k < 9; ++k) e.boundary -= 0.5 * (virial_before.a[k] + virial.a[k]) * state_.cell.rate.a[k] * dt;
+  for (const auto& w : state_.walls) wall_power -= 0.5 * dot(w.force, w.velocity);
+  e.boundary += wall_power * dt;
+}
+
+void Engine::move(bool tally) {
+  const double dt = state_.dt;
+  const double displacement = drift(state_, dt);
+  if (update_lists(state_, displacement)) refresh_workspace();
+  forces(dt, tally || scene_.energy);
+  last_dt_ = dt;
+  state_.time += dt;
+  ++state_.step;
+}
+
+void Engine::kick(double next_dt) {
+  sums_ = eg::kick(state_, work_, 0.5 * (last_dt_ + next_dt), kick_);
+  auto& e = state_.ledger;
+  e.local_damping += sums_.local_damping, e.mass_damping += sums_.mass_damping;
+  e.body += sums_.body, e.boundary += sums_.affine;
+  state_.dt = next_dt;
+}
+
+double Engine::unbalanced_ratio() const {
+  if (!(tally_.force_sum > 0)) return 1;
+  const double mean_contact = tally_.force_sum / tally_.touching;
+  return sums_.unbalanced / static_cast<double>(state_.grains.size()) / mean_contact;
+}
+
+Mat3 contact_stress(const State& state) {
+  Mat3 s = state.virial;
+  return s *= 1 / state.cell.volume();
+}
+
+}  // namespace eg

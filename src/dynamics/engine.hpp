@@ -1,0 +1,49 @@
+#pragma once
+// One explicit step: drift, lists, forces, kick. Knows nothing of stages, files or how the step was chosen.
+#include "dynamics/force_loop.hpp"
+#include "dynamics/integrate.hpp"
+
+namespace eg {
+
+class Engine {
+ public:
+  /// Works on `state` in place. A state without lists gets them, and its first forces (with no motion behind them).
+  /// `scalar`: the reference force loop. Throws RunError when the cell is too narrow for its grains.
+  Engine(const Scene& scene, State& state, bool scalar = false);
+
+  void set_friction(const std::vector<double>& friction);   ///< µ per material
+  void set_local_damping(double alpha) { kick_.local = alpha; }
+
+  /// Drift over state.dt, lists, forces at the new time. `tally`: stress, works and force statistics wanted.
+  void move(bool tally);
+  /// Kick to the next half step; the next drift will take next_dt [s]. Advances state.time's velocity only.
+  void kick(double next_dt);
+  /// Both, with one step length.
+  void step(double dt, bool tally = true) { move(tally); kick(dt); }
+
+  const Tally& tally() const { return tally_; }             ///< of the last move with tally
+  const KickSums& kick_sums() const { return sums_; }
+  const ForceWorkspace& workspace() const { return work_; }
+  /// Mean net force of grains over mean contact force in the last step with tally [-]; 1 without contacts.
+  double unbalanced_ratio() const;
+  /// Forces at the present positions after a motion of length dt (no drift, no list check): for tests and linearisation.
+  void forces(double dt, bool tally);
+
+ private:
+  void refresh_workspace();
+
+  const Scene& scene_;
+  State& state_;
+  std::unique_ptr<ForceLoop> loop_;
+  ForceWorkspace work_;
+  ForceOptions options_;
+  KickOptions kick_;
+  Tally tally_;
+  KickSums sums_;
+  double last_dt_ = 0;
+};
+
+/// Stress from the last step's contacts: virial over volume, compression positive [Pa] (2D: N/m).
+Mat3 contact_stress(const State& state);
+
+}  // namespace eg

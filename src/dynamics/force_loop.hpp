@@ -1,0 +1,75 @@
+#pragma once
+// Forces of all contacts. The scene decides once which instantiation runs: law, friction, rotation, number type.
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "contact/interaction.hpp"
+#include "state/schedule.hpp"
+#include "state/scene.hpp"
+#include "state/state.hpp"
+
+namespace eg {
+
+/// Sum of contact forces and moments on one grain [N], [N m].
+struct alignas(64) ForceRow {
+  Quad force, moment;
+};
+
+/// What the loop adds up over all contacts when asked.
+struct Tally {
+  Mat3 virial;             ///< Σ f ⊗ branch, f on j [J]
+  double stiffness_sum = 0;///< Σ kn d² [J]
+  double force_sum = 0;    ///< Σ |f| [N]
+  double touching = 0;     ///< number of contacts that touch
+  double shear_work = 0, friction = 0, viscous = 0;  ///< work and dissipation of the last increment [J]
+  Tally& operator+=(const Tally& b);
+};
+
+/// Scratch of the force loop: accumulator rows (grains, then halo rows) and their schedule.
+struct ForceWorkspace {
+  Schedule schedule;
+  std::vector<ForceRow> rows;
+  std::vector<Tally> tally;               ///< a chunk
+  std::vector<Quad> shift;                ///< translation of each image
+};
+
+struct ForceOptions {
+  Arms arms = Arms::middle;
+  double normal_ratio = 0, shear_ratio = 0;  ///< contact dashpots, ξ
+  bool tally = false;                        ///< virial and works wanted
+  bool scalar = false;                       ///< the reference path: one contact at a time
+};
+
+class ForceLoop {
+ public:
+  virtual ~ForceLoop() = default;
+  virtual std::size_t history_size() const = 0;
+  virtual std::size_t history_vectors() const = 0;
+  /// Constants of all pairs of materials with these friction coefficients.
+  virtual void set_materials(const std::vector<Material>& materials, const std::vector<double>& friction, int dimension) = 0;
+  /// Forces of all grain–grain contacts after an increment of length dt: fills workspace.rows, updates history, state.virial.
+  /// Deterministic for any number of threads.
+  virtual Tally contacts(State& state, ForceWorkspace& work, double dt, const ForceOptions& options) const = 0;
+  /// Adds the wall contacts (after contacts()); sets Wall::force.
+  virtual Tally walls(State& state, ForceWorkspace& work, double dt, const ForceOptions& options) const = 0;
+};
+
+/// `frictionless` leaves out shear, its history and all moments. Throws InputError for an unknown law.
+std::unique_ptr<ForceLoop> make_force_loop(std::string_view law, bool frictionless, bool rotation);
+
+/// Sets sizes of the workspace after the contact list changed.
+void prepare(ForceWorkspace& work, const State& state);
+
+/// Force on grain i: its own row plus its halo rows, in fixed order.
+inline ForceRow gather_row(const ForceWorkspace& work, std::size_t i) {
+  ForceRow r = work.rows[i];
+  for (Index h = work.schedule.gather_begin[i]; h < work.schedule.gather_begin[i + 1]; ++h) {
+    const ForceRow& o = work.rows[work.schedule.gather_row[h]];
+    r.force.x += o.force.x, r.force.y += o.force.y, r.force.z += o.force.z;
+    r.moment.x += o.moment.x, r.moment.y += o.moment.y, r.moment.z += o.moment.z;
+  }
+  return r;
+}
+
+}  // namespace eg

@@ -1,0 +1,202 @@
+#pragma once
+// The force loop, once for every law and number type; included only by the files that instantiate it.
+#include <algorithm>
+
+#include "contact/lanes.hpp"
+#include "dynamics/force_loop.hpp"
+
+namespace eg {
+
+template <class Law, bool rotation>
+class ForceLoopOf final : public ForceLoop {
+ public:
+  using Table = typename Law::template Constants<double>;
+
+  std::size_t history_size() const override { return eg::history_size<Law>; }
+  std::size_t history_vectors() const override { return Law::history_vectors; }
+
+  void set_materials(const std::vector<Material>& materials, const std::vector<double>& friction, int dimension) override {
+    kinds_ = materials.size();
+    constants_.clear();
+    for (std::size_t a = 0; a < kinds_; ++a)
+      for (std::size_t b = 0; b < kinds_; ++b) {
+        Material ma = materials[a], mb = materials[b];
+        ma.friction = friction[a], mb.friction = friction[b];
+        constants_.push_back(Law::constants(ma, mb, dimension));
+      }
+  }
+
+  Tally contacts(State& state, ForceWorkspace& work, double dt, const ForceOptions& options) const override {
+    const std::size_t chunks = work.schedule.chunks();
+    for (std::size_t c = 0; c < Cell::images; ++c) work.shift[c].set(state.cell.shift(static_cast<std::uint8_t>(c)));
+#pragma omp parallel for schedule(static)
+    for (std::size_t k = 0; k < chunks; ++k)
+      work.tally[k] = options.scalar ? chunk<double>(state, work, k, dt, options) : chunk<Batch>(state, work, k, dt, options);
+    Tally total;
+    for (std::size_t k = 0; k < chunks; ++k) total += work.tally[k];
+    return total;
+  }
+
+  Tally walls(State& state, ForceWorkspace& work, double dt, const ForceOptions& options) const override;
+
+ private:
+  template <class S>
+  struct Sums {
+    Mat<S> virial;
+    S force = S(0.0), touching = S(0.0), stiffness = S(0.0), shear_work = S(0.0), friction = S(0.0), viscous = S(0.0);
+  };
+
+  template <class S>
+  EG_INLINE Tally chunk(State& state, ForceWorkspace& work, std::size_t k, double dt, const ForceOptions& options) const {
+    constexpr std::size_t lanes = lanes_of<S>;
+    constexpr std::size_t ahead = 4 * Contacts::lanes;  // contacts between a prefetch and its use
+    Contacts& list = state.contacts;
+    const std::size_t low = k * Contacts::chunk, high = std::min(state.grains.size(), low + Contacts::chunk);
+    std::fill(work.rows.begin() + static_cast<std::ptrdiff_t>(low), work.rows.begin() + static_cast<std::ptrdiff_t>(high), ForceRow{});
+    std::fill(work.rows.begin() + work.schedule.halo_begin[k], work.rows.begin() + work.schedule.halo_begin[k + 1], ForceRow{});
+
+    const Quad *position = state.grains.position.data(), *velocity = state.grains.velocity.data(), *spin = state.grains.spin.data();
+    const Index *ci = list.i.data(), *cj = list.j.data(), *target = work.schedule.target.data();
+    const std::uint8_t* image = list.image.empty() ? nullptr : list.image.data();
+    auto* rows = reinterpret_cast<Quad*>(work.rows.data());
+    const bool uniform = state.grains.material.empty();
+    const bool damped = options.normal_ratio > 0 || options.shear_ratio > 0;
+    const Mat<S> affine = broadcast<S>(state.cell.rate);
+    Sums<S> sums;
+
+    const std::size_t end = list.chunk_begin[k + 1];
+    for (std::size_t c = list.chunk_begin[k]; c < end; c += lanes) {
+      if (c + ahead < end) {
+        for (std::size_t l = 0; l < lanes; ++l) {
+          const Index j = cj[c + ahead + l];
+          __builtin_prefetch(position + j), __builtin_prefetch(velocity + j);
+          if constexpr (rotation) __builtin_prefetch(spin + j);
+          __builtin_prefetch(rows + 2 * target[c + ahead + l], 1);
+        }
+      }
+      const auto pi = load_quads<S>(position, ci + c);
+      const auto pj = load_quads<S>(position, cj + c, image ? work.shift.data() : nullptr, image + c);
+      const Vec<S> branch = xyz(pj) - xyz(pi);
+      const auto g = grain_grain(branch, pi.w, pj.w, options.arms);
+      const auto touching = (g.overlap > S(0.0)) & (dot(branch, branch) > S(0.0));  // padding has branch 0
+      const auto vi = load_quads<S>(velocity, ci + c), vj = load_quads<S>(velocity, cj + c);
+      Motion<S> motion;
+      motion.translation = (xyz(vj) - xyz(vi) + affine * branch) * S(dt);
+      if constexpr (rotation) {
+        motion.rotation_i = xyz(load_quads<S>(spin, ci + c)) * S(dt);
+        motion.rotation_j = xyz(load_quads<S>(spin, cj + c)) * S(dt);
+      }
+      const auto inc = increment<rotation>(g, motion);
+      const auto constants = gather_struct<typename Law::template Constants<S>, Table, S>(
+          constants_.data(), uniform,
+          [&](std::size_t l) { return state.grains.material[ci[c + l]] * kinds_ + state.grains.material[cj[c + l]]; });
+      const auto pair = Law::template pair<S>(constants, pi.w, pj.w);
+
+      History<Law, S> history;
+      double* stored = list.history.data() + (c / Contacts::lanes * list.history_size) * Contacts::lanes + c % Contacts::lanes;
+      for (std::size_t h = 0; h < history.size(); ++h) history[h] = load_values<S>(stored + h * Contacts::lanes);
+      ContactForce<S> f;
+      if (damped) {
+        const S inverse = vi.w + vj.w;
+        const Dashpot<S> dashpot{S(options.normal_ratio), S(options.shear_ratio),
+                                 select(inverse > S(0.0), S(1.0) / inverse, S(0.0)), S(dt > 0 ? 1 / dt : 0)};
+        f = interact<Law, true>(pair, g, inc, touching, history, dashpot);
+      } else {
+        f = interact<Law, false>(pair, g, inc, touching, history, Dashpot<S>{});
+      }
+      for (std::size_t h = 0; h < history.size(); ++h) store_values(stored + h * Contacts::lanes, history[h]);
+
+      const S zero(0.0);
+      const Vec<S> on_i = -f.on_j;
+      add_quads<S>(rows, ci + c, 2, 0, {on_i.x, on_i.y, on_i.z, zero});
+      add_quads<S>(rows, target + c, 2, 0, {f.on_j.x, f.on_j.y, f.on_j.z, zero});
+      if constexpr (rotation) {
+        const Vec<S> mi = f.moment * g.arm_i, mj = f.moment * g.arm_j;
+        add_quads<S>(rows, ci + c, 2, 1, {mi.x, mi.y, mi.z, zero});
+        add_quads<S>(rows, target + c, 2, 1, {mj.x, mj.y, mj.z, zero});
+      }
+      if (options.tally) add(sums, branch, inc, f, touching);
+    }
+    return finish(sums);
+  }
+
+  template <class S, class M>
+  EG_INLINE static void add(Sums<S>& sums, const Vec<S>& branch, const Increment<S>& inc, const ContactForce<S>& f, M touching) {
+    sums.virial += outer(f.on_j, branch);
+    sums.stiffness = sums.stiffness + select(touching, f.law.normal.stiffness * dot(branch, branch), S(0.0));
+    sums.viscous = sums.viscous + f.viscous_work;
+    sums.force = sums.force + norm(f.on_j);
+    sums.touching = sums.touching + select(touching, S(1.0), S(0.0));
+    if constexpr (Law::history_vectors > 0) {
+      const Vec<S> mean = (f.law.shear + f.shear_before) * S(0.5);  // trapezoidal rule over the increment
+      sums.shear_work = sums.shear_work + dot(mean, inc.slip);
+      const S slid = dot(mean, f.law.unslipped - f.law.shear);
+      const S kt = f.law.normal.tangential;
+      sums.friction = sums.friction + select(touching & (kt > S(0.0)), slid / max(kt, S(1e-300)), S(0.0));
+    }
+  }
+
+  template <class S>
+  static Mat<S> broadcast(const Mat3& m) {
+    Mat<S> b;
+    for (std::size_t k = 0; k < 9; ++k) b.a[k] = S(m.a[k]);
+    return b;
+  }
+  static double total(double s) { return s; }
+  static double total(Batch s) { return sum(s); }
+  template <class S>
+  static Tally finish(const Sums<S>& s) {
+    Tally t;
+    for (std::size_t k = 0; k < 9; ++k) t.virial.a[k] = total(s.virial.a[k]);
+    t.force_sum = total(s.force), t.touching = total(s.touching);
+    t.stiffness_sum = total(s.stiffness), t.shear_work = total(s.shear_work);
+    t.friction = total(s.friction), t.viscous = total(s.viscous);
+    return t;
+  }
+
+  std::size_t kinds_ = 0;
+  std::vector<Table> constants_;
+};
+
+template <class Law, bool rotation>
+Tally ForceLoopOf<Law, rotation>::walls(State& state, ForceWorkspace& work, double dt, const ForceOptions& options) const {
+  Tally tally;
+  for (auto& w : state.walls) w.force = Vec3{};
+  for (auto& c : state.wall_contacts) {
+    Wall& wall = state.walls[c.wall];
+    const Quad& p = state.grains.position[c.grain];
+    const Quad& v = state.grains.velocity[c.grain];
+    const auto g = grain_plane<double>(dot(p.vec() - wall.point, wall.normal), wall.normal, p.w, options.arms);
+    Motion<double> motion{(wall.velocity - v.vec()) * dt, {}, {}};
+    if constexpr (rotation) motion.rotation_i = state.grains.spin[c.grain].vec() * dt;
+    const auto inc = increment<rotation>(g, motion);
+    const auto& constants = constants_[state.grains.material_of(c.grain) * kinds_ + wall.material];
+    const auto pair = Law::template pair<double>(constants, p.w, INFINITY);
+    History<Law, double> history;
+    std::copy_n(c.history.begin(), history.size(), history.begin());
+    const Dashpot<double> dashpot{options.normal_ratio, options.shear_ratio, v.w > 0 ? 1 / v.w : 0, dt > 0 ? 1 / dt : 0};
+    const auto f = interact<Law, true>(pair, g, inc, g.overlap > 0, history, dashpot);
+    std::copy_n(history.begin(), history.size(), c.history.begin());
+
+    ForceRow& row = work.rows[c.grain];
+    row.force.set(row.force.vec() - f.on_j);
+    if constexpr (rotation) row.moment.set(row.moment.vec() + f.moment * g.arm_i);
+    wall.force += f.on_j;
+    if (!options.tally) continue;
+    Sums<double> sums;
+    add(sums, Vec3{}, inc, f, g.overlap > 0);
+    Tally one = finish(sums);
+    tally += one;
+  }
+  return tally;
+}
+
+/// The instantiations a law needs; one source file a law calls it.
+template <class Law>
+std::unique_ptr<ForceLoop> make_force_loop_of(bool frictionless, bool rotation) {
+  if (frictionless) return std::make_unique<ForceLoopOf<Frictionless<Law>, false>>();
+  if (rotation) return std::make_unique<ForceLoopOf<Law, true>>();
+  return std::make_unique<ForceLoopOf<Law, false>>();
+}
+
+}  // namespace eg

@@ -1,0 +1,163 @@
+#include "search/grid.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "base/error.hpp"
+
+namespace eg {
+namespace {
+
+/// Parallelepiped that holds all grains, with fractional coordinates in [0, 1).
+struct Frame {
+  Vec3 origin;
+  Mat3 to_fractional;
+  std::array<bool, 3> periodic;
+  std::array<double, 3> width;
+};
+
+Frame make_frame(const Grains& grains, const Cell& cell) {
+  Mat3 h = cell.h;
+  Vec3 origin = cell.origin;
+  for (int k = 0; k < 3; ++k) {
+    if (cell.periodic[static_cast<std::size_t>(k)]) continue;
+    double low = INFINITY, high = -INFINITY;
+    for (const auto& p : grains.position) low = std::min(low, p.vec()[k]), high = std::max(high, p.vec()[k]);
+    const double extent = std::max(high - low, 1e-300) * (1 + 1e-9) + 1e-300;
+    for (int r = 0; r < 3; ++r) h(r, k) = 0;
+    h(k, k) = extent;
+    origin[k] = low;
+  }
+  Cell box = cell;
+  box.h = h;
+  return {origin, inverse(h), cell.periodic, {box.width(0), box.width(1), box.width(2)}};
+}
+
+struct Level {
+  double largest = 0;                 // radius [m]
+  std::array<int, 3> n{1, 1, 1};
+  std::vector<Index> begin, items;    // grains of a cell: items[begin[c] … begin[c+1])
+
+  std::size_t cell(int a, int b, int c) const {
+    return (static_cast<std::size_t>(c) * static_cast<std::size_t>(n[1]) + static_cast<std::size_t>(b)) *
+               static_cast<std::size_t>(n[0]) + static_cast<std::size_t>(a);
+  }
+};
+
+using Place = std::array<int, 3>;
+
+Place place(const Frame& f, const Level& level, const Vec3& x) {
+  const Vec3 s = f.to_fractional * (x - f.origin);
+  Place p{};
+  for (int k = 0; k < 3; ++k) {
+    const auto u = static_cast<std::size_t>(k);
+    p[u] = std::clamp(static_cast<int>(s[k] * level.n[u]), 0, level.n[u] - 1);
+  }
+  return p;
+}
+
+void fill(Level& level, const Frame& f, const Grains& grains, std::span<const Index> members, double skin) {
+  const double size = 2 * level.largest + skin;
+  for (std::size_t k = 0; k < 3; ++k) level.n[k] = static_cast<int>(std::clamp(f.width[k] / size, 1.0, 1024.0));
+  while (1.0 * level.n[0] * level.n[1] * level.n[2] > 4.0 * static_cast<double>(members.size()) + 64)
+    *std::max_element(level.n.begin(), level.n.end()) /= 2;  // sparse clouds need no finer grid than they have grains
+  level.begin.assign(level.cell(0, 0, level.n[2]) + 1, 0);
+  std::vector<std::size_t> where(members.size());
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    const Place p = place(f, level, grains.position[members[m]].vec());
+    where[m] = level.cell(p[0], p[1], p[2]);
+    ++level.begin[where[m] + 1];
+  }
+  for (std::size_t c = 1; c < level.begin.size(); ++c) level.begin[c] += level.begin[c - 1];
+  level.items.resize(members.size());
+  auto next = level.begin;
+  for (std::size_t m = 0; m < members.size(); ++m) level.items[next[where[m]]++] = members[m];
+}
+
+/// Calls f(cell number, image code) for the cells around a place; every (cell, image) once.
+template <class F>
+void around(const Frame& frame, const Level& level, const Place& p, F&& f) {
+  std::array<std::array<int, 3>, 3> index{}, step{};
+  std::array<int, 3> count{};
+  for (std::size_t k = 0; k < 3; ++k)
+    for (int o = -1; o <= 1; ++o) {
+      int q = p[k] + o, s = 0;
+      if (q < 0 || q >= level.n[k]) {
+        if (!frame.periodic[k]) continue;
+        s = q < 0 ? -1 : 1;
+        q -= s * level.n[k];
+      }
+      const auto c = static_cast<std::size_t>(count[k]++);
+      index[k][c] = q, step[k][c] = s;
+    }
+  for (std::size_t c = 0; c < static_cast<std::size_t>(count[2]); ++c)
+    for (std::size_t b = 0; b < static_cast<std::size_t>(count[1]); ++b)
+      for (std::size_t a = 0; a < static_cast<std::size_t>(count[0]); ++a)
+        f(level.cell(index[0][a], index[1][b], index[2][c]), Cell::code(step[0][a], step[1][b], step[2][c]));
+}
+
+}  // namespace
+
+std::vector<NearPair> find_pairs(const Grains& grains, const Cell& cell, double skin) {
+  if (grains.size() == 0) return {};
+  double smallest = INFINITY, largest = 0;
+  for (const auto& p : grains.position) {
+    if (!std::isfinite(p.x + p.y + p.z)) throw RunError("a grain's position is not finite: the step was unstable; use a smaller one");
+    smallest = std::min(smallest, p.w), largest = std::max(largest, p.w);
+  }
+  const Frame frame = make_frame(grains, cell);
+  for (std::size_t k = 0; k < 3; ++k)
+    if (frame.periodic[k] && frame.width[k] < 2 * largest + skin)
+      throw RunError(fmt::format("the periodic cell is {:.6g} m wide along {}, less than the largest diameter plus the list's skin, "
+                                 "{:.6g} m: use more grains or more lattice cells", frame.width[k], "xyz"[k], 2 * largest + skin));
+
+  const auto class_of = [&](double r) { return static_cast<std::size_t>(std::log2(r / smallest) + 1e-9); };
+  std::vector<Level> levels(class_of(largest) + 1);
+  std::vector<std::vector<Index>> members(levels.size());
+  for (std::size_t i = 0; i < grains.size(); ++i) {
+    const auto l = class_of(grains.radius(i));
+    members[l].push_back(static_cast<Index>(i));
+    levels[l].largest = std::max(levels[l].largest, grains.radius(i));
+  }
+  for (std::size_t l = 0; l < levels.size(); ++l)
+    if (!members[l].empty()) fill(levels[l], frame, grains, members[l], skin);
+
+  std::array<Vec3, Cell::images> shift;
+  for (std::size_t c = 0; c < Cell::images; ++c) shift[c] = cell.shift(static_cast<std::uint8_t>(c));
+  constexpr std::size_t chunk = 4096;
+  const std::size_t chunks = (grains.size() + chunk - 1) / chunk;
+  std::vector<std::vector<NearPair>> found(chunks);
+#pragma omp parallel for schedule(dynamic)
+  for (std::size_t k = 0; k < chunks; ++k)
+    for (std::size_t i = k * chunk; i < std::min(grains.size(), (k + 1) * chunk); ++i) {
+      const Quad& a = grains.position[i];
+      const auto own = class_of(a.w);
+      for (std::size_t l = own; l < levels.size(); ++l) {
+        if (members[l].empty()) continue;
+        around(frame, levels[l], place(frame, levels[l], a.vec()), [&](std::size_t box, std::uint8_t image) {
+          for (Index m = levels[l].begin[box]; m < levels[l].begin[box + 1]; ++m) {
+            const Index j = levels[l].items[m];
+            if (l == own && (j < i || (j == i && image <= Cell::home))) continue;  // each pair once
+            const Quad& b = grains.position[j];
+            const Vec3 branch = b.vec() + shift[image] - a.vec();
+            const double reach = a.w + b.w + skin;
+            if (dot(branch, branch) >= reach * reach) continue;
+            const auto ii = static_cast<Index>(i);
+            found[k].push_back(ii <= j ? NearPair{ii, j, image} : NearPair{j, ii, static_cast<std::uint8_t>(26 - image)});
+          }
+        });
+      }
+    }
+  std::vector<NearPair> all;
+  std::size_t total = 0;
+  for (const auto& f : found) total += f.size();
+  all.reserve(total);
+  for (const auto& f : found) all.insert(all.end(), f.begin(), f.end());
+  return all;
+}
+
+}  // namespace eg

@@ -1,0 +1,39 @@
+#include "state/schedule.hpp"
+
+#include <algorithm>
+
+namespace eg {
+
+void make_schedule(Schedule& out, std::size_t grains, std::size_t chunk, std::span<const Index> j,
+                   std::span<const std::uint64_t> chunk_begin) {
+  const std::size_t chunks = chunk_begin.size() - 1;
+  out.grains = grains;
+  out.target.assign(j.begin(), j.end());
+  out.halo_begin.assign(1, static_cast<Index>(grains));
+
+  std::vector<Index> owner;                          // grain of each halo row
+  std::vector<Index> row_of(grains, no_index);       // its row within the chunk under way
+  for (std::size_t k = 0; k < chunks; ++k) {
+    const std::size_t low = k * chunk, high = std::min(grains, low + chunk), first = owner.size();
+    for (std::size_t c = chunk_begin[k]; c < chunk_begin[k + 1]; ++c) {
+      const Index grain = j[c];
+      if (grain >= low && grain < high) continue;
+      if (row_of[grain] == no_index) {
+        row_of[grain] = static_cast<Index>(grains + owner.size());
+        owner.push_back(grain);
+      }
+      out.target[c] = row_of[grain];
+    }
+    for (std::size_t h = first; h < owner.size(); ++h) row_of[owner[h]] = no_index;
+    out.halo_begin.push_back(static_cast<Index>(grains + owner.size()));
+  }
+
+  out.gather_begin.assign(grains + 1, 0);            // counting sort of halo rows by their grain
+  for (const Index grain : owner) ++out.gather_begin[grain + 1];
+  for (std::size_t i = 0; i < grains; ++i) out.gather_begin[i + 1] += out.gather_begin[i];
+  out.gather_row.resize(owner.size());
+  auto next = out.gather_begin;
+  for (std::size_t h = 0; h < owner.size(); ++h) out.gather_row[next[owner[h]]++] = static_cast<Index>(grains + h);
+}
+
+}  // namespace eg

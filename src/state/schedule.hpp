@@ -1,0 +1,28 @@
+#pragma once
+// How pair loops add to grains from several threads with the same result for any number of them: a chunk of grains owns
+// its rows of the accumulator; what it adds to grains of other chunks goes to rows of its own ("halo"), which are added
+// in a fixed order afterwards.
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "base/vec.hpp"
+
+namespace eg {
+
+struct Schedule {
+  std::vector<Index> target;        ///< accumulator row of side j, one a pair; side i's row is i itself
+  std::vector<Index> halo_begin;    ///< halo rows of chunk k: [halo_begin[k], halo_begin[k+1])
+  std::vector<Index> gather_begin;  ///< halo rows to add to grain i: gather_row[gather_begin[i] … gather_begin[i+1])
+  std::vector<Index> gather_row;
+  std::size_t grains = 0;
+
+  std::size_t rows() const { return grains + gather_row.size(); }
+  std::size_t chunks() const { return halo_begin.empty() ? 0 : halo_begin.size() - 1; }
+};
+
+/// Pairs sorted by i, in chunks of `chunk` grains; `chunk_begin` as in Contacts. O(pairs).
+void make_schedule(Schedule& out, std::size_t grains, std::size_t chunk, std::span<const Index> j,
+                   std::span<const std::uint64_t> chunk_begin);
+
+}  // namespace eg
