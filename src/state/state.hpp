@@ -71,6 +71,14 @@ struct EnergyLedger {
   double body = 0;              ///< work done by gravity
 };
 
+/// What the step policy has planned; part of the state so that a resumed run goes on alike.
+struct StepPlan {
+  std::uint64_t due = 0;        ///< step of the next evaluation; 0: at once
+  double dt = 0;                ///< step in force [s]
+  double safe = 0;              ///< certified limit of the step [s]
+  double upper = 0;             ///< upper bound of the limit [s]
+};
+
 struct State {
   int dimension = 3;
   double time = 0;              ///< [s]
@@ -90,6 +98,7 @@ struct State {
   std::uint64_t stage_step = 0;
   double stage_time = 0;
   Mat3 stage_cell;              ///< cell matrix when the stage began
+  StepPlan policy;
   std::array<double, 6> servo{};///< integral part of the cell controller [1/s]
 };
 
