@@ -17,13 +17,14 @@ Figure limit_chart(std::vector<LimitRow> rows, double proved) {
   for (const auto& row : rows) {
     const bool fails = row.ratio > 1;
     figure.y.rows.push_back(row.name);
-    figure.bars.push_back({.row = static_cast<double>(figure.bars.size()),
-                           .from = 1,
-                           .to = row.ratio,
-                           .colour = fails ? unstable : stable,
-                           .fill = fails ? Fill::hatched : Fill::solid,
-                           .marker = fails ? Marker::cross : Marker::circle,
-                           .text = fmt::format("{:.{}f}", row.ratio, row.ratio < 0.1 || std::abs(row.ratio - 1) < 0.02 ? 3 : 2)});
+    figure.bars.push_back(
+        {.row = static_cast<double>(figure.bars.size()),
+         .from = 1,
+         .to = row.ratio,
+         .colour = fails ? unstable : stable,
+         .fill = fails ? Fill::hatched : Fill::solid,
+         .marker = fails ? Marker::cross : Marker::circle,
+         .text = fmt::format("{:.{}f}", row.ratio, row.ratio < 0.1 || std::abs(row.ratio - 1) < 0.02 ? 3 : 2)});
     least = std::min(least, row.ratio), greatest = std::max(greatest, row.ratio);
   }
   figure.x = {.title = "time step / exact limit  [-]",

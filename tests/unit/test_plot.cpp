@@ -14,7 +14,9 @@ namespace eg {
 namespace {
 
 struct Drawn : testing::Test {
-  std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "eigengrain_plot";
+  // Named after the test: CTest runs several at a time.
+  std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "eigengrain_plot" /
+                                 testing::UnitTest::GetInstance()->current_test_info()->name();
   ~Drawn() override { std::filesystem::remove_all(folder); }
 
   std::string draw(const Figure& figure, const std::string& name) const {
