@@ -55,6 +55,7 @@ class Gatherer {
     const double overlap = p.geometry.overlap + (growth ? growth(p.i, p.j, p.geometry) : 0.0);
     if (!(overlap > 0)) return;
     p.normal = Law::template normal<double>(pair, overlap);
+    if (state_.contacts.history_vectors == 0) p.normal.tangential = 0;  // a frictionless scene has no shear
     p.normal_energy = Law::normal_energy(pair, overlap);
     p.limit = pair.friction * p.normal.force;
     visit(p);
