@@ -1,0 +1,35 @@
+#pragma once
+// Volumes of grains, of their overlaps and of the voids between them [m³]; 2D: areas [m²].
+#include <span>
+
+#include "state/gather.hpp"
+
+namespace eg {
+
+double grain_volume(int dimension, double radius);
+
+/// Volume common to two spheres (2D: area common to two disks) whose centres are `distance` ≥ 0 apart.
+double lens_volume(int dimension, double ri, double rj, double distance);
+
+/// Part of a sphere beyond a plane at `height` from its centre, −radius ≤ height ≤ radius (2D: of a disk).
+double cap_volume(int dimension, double radius, double height);
+
+/// Sum of the grains' own volumes: what overlaps counts twice.
+double solid_volume(const State&);
+
+/// What contacts make overlap: lenses between grains and caps beyond walls, contact by contact. Where three grains
+/// overlap at one place the common part is counted more than once; contacts of real packings are too small for that.
+double overlap_volume(const State&, std::span<const ContactPoint>);
+
+/// e = (V − V_s)/V_s. DEM papers use V_s = solid_volume(); solid_volume() − overlap_volume() corrects for overlaps.
+inline double void_ratio(double volume, double solid) { return (volume - solid) / solid; }
+
+struct SizeStatistics {
+  double smallest = 0, largest = 0;  ///< diameters [m]
+  double mean = 0;                   ///< diameter, by number [m]
+  double deviation = 0;              ///< standard deviation of the diameter [m]
+  double d50 = 0;                    ///< diameter at which half the mass passes, for grains of one density [m]
+};
+SizeStatistics size_statistics(const State&);
+
+}  // namespace eg
