@@ -16,10 +16,10 @@ std::vector<int> contacts_per_grain(std::size_t grains, std::span<const ContactP
 
 struct Coordination {
   std::size_t grains = 0, contacts = 0, wall_contacts = 0;
-  std::size_t isolated = 0;   ///< grains with no contact
-  std::size_t dangling = 0;   ///< grains with one contact
-  double mean = 0;            ///< Z = 2 Nc/N (a wall contact counts once)
-  double mechanical = 0;      ///< Z_m = (2 Nc − N1)/(N − N0 − N1) (Thornton 2000): mean over grains with 2 or more
+  std::size_t isolated = 0;  ///< grains with no contact
+  std::size_t dangling = 0;  ///< grains with one contact
+  double mean = 0;           ///< Z = 2 Nc/N (a wall contact counts once)
+  double mechanical = 0;     ///< Z_m = (2 Nc − N1)/(N − N0 − N1) (Thornton 2000): mean over grains with 2 or more
 };
 Coordination coordination(std::size_t grains, std::span<const ContactPoint>);
 

@@ -13,7 +13,7 @@ Homogenised homogenise(const Scene& scene, const State& state) {
   const int dimension = state.dimension;
   Homogenised result;
   result.sizes = size_statistics(state);
-  result.volume = state.cell.volume();
+  result.volume = specimen_volume(state);
   const double solid = solid_volume(state);
   result.solid_fraction = solid / result.volume;
   result.void_ratio = void_ratio(result.volume, solid);

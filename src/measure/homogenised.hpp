@@ -7,23 +7,23 @@ namespace eg {
 
 struct Homogenised {
   SizeStatistics sizes;
-  double volume = 0;                     ///< of the cell [m³] (2D: [m²])
-  double solid_fraction = 0;             ///< overlaps counted twice [-]
-  double void_ratio = 0;                 ///< likewise
-  double void_ratio_corrected = 0;       ///< overlaps counted once
-  Coordination coordination;             ///< of all grains
-  Coordination backbone;                 ///< without rattlers
-  int rattler_minimum = 2;               ///< contacts a grain of the backbone has at least: 2 with friction, D + 1 without
+  double volume = 0;                ///< of the specimen [m³] (2D: [m²]), see specimen_volume()
+  double solid_fraction = 0;        ///< overlaps counted twice [-]
+  double void_ratio = 0;            ///< likewise
+  double void_ratio_corrected = 0;  ///< overlaps counted once
+  Coordination coordination;        ///< of all grains
+  Coordination backbone;            ///< without rattlers
+  int rattler_minimum = 2;          ///< contacts a grain of the backbone has at least: 2 with friction, D + 1 without
   Mat3 fabric;
-  double largest_overlap = 0;            ///< over the diameter of the smaller grain [-]
+  double largest_overlap = 0;  ///< over the diameter of the smaller grain [-]
   double sliding_fraction = 0;
-  Mat3 stress;                           ///< compression positive [Pa] (2D: N/m)
-  double mean_stress = 0, deviator = 0;  ///< p, q
-  double unbalanced_force = 0;           ///< [-]
+  Mat3 stress;                                    ///< compression positive [Pa] (2D: N/m)
+  double mean_stress = 0, deviator = 0;           ///< p, q
+  double unbalanced_force = 0;                    ///< [-]
   double kinetic_energy = 0, elastic_energy = 0;  ///< [J]
 };
 
-/// All of it for a state with up-to-date lists; volume is that of the cell, also between walls.
+/// All of it for a state with up-to-date lists.
 Homogenised homogenise(const Scene&, const State&);
 
 }  // namespace eg

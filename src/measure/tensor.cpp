@@ -26,7 +26,9 @@ void rotate_away(Mat3& m, int p, int q) {
 
 }  // namespace
 
-double mean_value(const Mat3& m, int dimension) { return (m(0, 0) + m(1, 1) + (dimension == 3 ? m(2, 2) : 0)) / dimension; }
+double mean_value(const Mat3& m, int dimension) {
+  return (m(0, 0) + m(1, 1) + (dimension == 3 ? m(2, 2) : 0)) / dimension;
+}
 
 double deviator(const Mat3& tensor, int dimension) {
   const Mat3 m = symmetric_part(tensor);

@@ -33,6 +33,19 @@ double lens_volume(int dimension, double ri, double rj, double distance) {
   return cap_volume(dimension, ri, ri - hi) + cap_volume(dimension, rj, rj - hj);
 }
 
+double specimen_volume(const State& state) {
+  Mat3 edges = state.cell.h;
+  for (int k = 0; k < state.dimension; ++k) {
+    double low = -INFINITY, high = INFINITY;
+    for (const Wall& wall : state.walls) {
+      if (wall.normal[k] == 1) low = std::max(low, wall.point[k]);
+      if (wall.normal[k] == -1) high = std::min(high, wall.point[k]);
+    }
+    if (std::isfinite(high - low)) edges(k, k) = high - low;
+  }
+  return edges(0, 0) * edges(1, 1) * edges(2, 2);
+}
+
 double solid_volume(const State& state) {
   double sum = 0;
   for (std::size_t i = 0; i < state.grains.size(); ++i) sum += grain_volume(state.dimension, state.grains.radius(i));

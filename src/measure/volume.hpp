@@ -14,6 +14,10 @@ double lens_volume(int dimension, double ri, double rj, double distance);
 /// Part of a sphere beyond a plane at `height` from its centre, −radius ≤ height ≤ radius (2D: of a disk).
 double cap_volume(int dimension, double radius, double height);
 
+/// Volume of the specimen: of the cell; between parallel walls across x, y or z, the innermost ones count, wherever
+/// they have moved.
+double specimen_volume(const State&);
+
 /// Sum of the grains' own volumes: what overlaps counts twice.
 double solid_volume(const State&);
 
