@@ -31,6 +31,7 @@ class History {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
   History(const std::string& path, const char* mode, std::size_t columns);
+  void write(const std::string& row);
 
   std::string path_;
   std::unique_ptr<std::FILE, Close> file_;

@@ -53,7 +53,7 @@ class TomlReader {
   bool number(std::string_view key, std::optional<double>& out, const Range&) const;
   /// A whole number; the range must lie within that of T.
   template <class T>
-    requires std::is_arithmetic_v<T>
+  requires std::is_arithmetic_v<T>
   bool integer(std::string_view key, T& out, const Range& range, Need need = Need::optional) const {
     double x = 0;
     const bool given = whole_number(key, x, range, need);

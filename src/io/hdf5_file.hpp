@@ -1,0 +1,95 @@
+#pragma once
+// As much of HDF5 as a snapshot needs: datasets of numbers with a unit, texts, and one-line errors. Private to io.
+#include <hdf5.h>
+
+#include <concepts>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace eg {
+
+/// Owns one HDF5 identifier.
+class Hdf5Handle {
+ public:
+  using Closer = herr_t (*)(hid_t);
+  Hdf5Handle(hid_t id, Closer close) : id_(id), close_(close) {}
+  Hdf5Handle(Hdf5Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Hdf5Handle& operator=(Hdf5Handle&&) = delete;
+  ~Hdf5Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  bool valid() const { return id_ >= 0; }
+  operator hid_t() const { return id_; }
+  /// Closes now; false when that fails, as it does when buffered data cannot be written.
+  bool close() { return close_(std::exchange(id_, -1)) >= 0; }
+
+ private:
+  hid_t id_;
+  Closer close_;
+};
+
+/// HDF5's type of a number; the same in memory and in the file.
+template <class T>
+hid_t hdf5_type() {
+  if constexpr (std::same_as<T, double>) return H5T_IEEE_F64LE;
+  if constexpr (std::same_as<T, std::uint8_t>) return H5T_STD_U8LE;
+  if constexpr (std::same_as<T, std::uint16_t>) return H5T_STD_U16LE;
+  if constexpr (std::same_as<T, std::uint32_t>) return H5T_STD_U32LE;
+  if constexpr (std::same_as<T, std::uint64_t>) return H5T_STD_U64LE;
+  if constexpr (std::same_as<T, int>) return H5T_STD_I32LE;
+}
+
+using Hdf5Shape = std::vector<hsize_t>;  ///< empty: a single number
+
+/// A file that is written once, from empty. Groups in dataset names ("grains/radius") are made as needed.
+class Hdf5Writer {
+ public:
+  /// `shown` is the name for messages. Throws RunError when the file cannot be made or written, as every member does.
+  Hdf5Writer(const std::string& path, std::string shown);
+  template <class T>
+  void write(const std::string& name, const std::string& unit, const Hdf5Shape& shape, const std::vector<T>& data) {
+    write(name, unit, shape, hdf5_type<T>(), data.data());
+  }
+  void write_text(const std::string& name, const std::string& text);
+  void close();
+
+ private:
+  void write(const std::string& name, const std::string& unit, const Hdf5Shape&, hid_t type, const void* data);
+  void require(bool success) const;
+
+  std::string shown_;
+  Hdf5Handle file_;
+};
+
+/// A file to read. Throws InputError when it is missing, foreign or damaged.
+class Hdf5Reader {
+ public:
+  explicit Hdf5Reader(const std::string& path);
+  /// Whether the file begins as HDF5 files do.
+  static bool recognises(const std::string& path);
+  bool has(const std::string& name) const;
+  /// The numbers of a dataset, which must be of type T; their shape goes to `shape`.
+  template <class T>
+  std::vector<T> read(const std::string& name, Hdf5Shape& shape) const {
+    const Hdf5Handle set = open(name, hdf5_type<T>(), shape);
+    hsize_t size = 1;
+    for (const auto edge : shape) size *= edge;
+    std::vector<T> data(size);
+    read(set, name, hdf5_type<T>(), data.data());
+    return data;
+  }
+  std::string read_text(const std::string& name) const;
+  /// Throws InputError "path: is damaged: … of dataset name".
+  [[noreturn]] void damaged(const std::string& name, const std::string& fault) const;
+
+ private:
+  Hdf5Handle open(const std::string& name, hid_t type, Hdf5Shape& shape) const;
+  void read(const Hdf5Handle& set, const std::string& name, hid_t type, void* data) const;
+
+  std::string path_;
+  Hdf5Handle file_;
+};
+
+}  // namespace eg

@@ -1,0 +1,114 @@
+#pragma once
+// The one list of what a snapshot holds of a State: the same lines write and read it. Structures are taken apart by
+// structured bindings, so that a field added to one of them does not compile until it is stored here. Private to io.
+#include <type_traits>
+
+#include "state/state.hpp"
+
+namespace eg {
+
+/// The vector part of a quad.
+template <class Q>
+struct VectorPart {
+  Q& quad;
+};
+inline constexpr auto vector_part = [](auto& quad) {
+  return VectorPart<std::remove_reference_t<decltype(quad)>>{quad};
+};
+inline constexpr auto scalar_part = [](auto& quad) -> auto& { return quad.w; };
+
+template <class Archive, class C>
+void visit_cell(Archive& a, C& cell) {
+  auto& [h, h_low, periodic, origin, rate] = cell;
+  a.value("cell/matrix", "m", h);
+  a.value("cell/matrix_lost", "m", h_low);
+  a.value("cell/periodic", "-", periodic);
+  a.value("cell/origin", "m", origin);
+  a.value("cell/rate", "1/s", rate);
+}
+
+template <class Archive, class G>
+void visit_grains(Archive& a, G& grains) {
+  auto& [position, velocity, spin, id, material] = grains;
+  a.column("grains/position", "m", position, vector_part);
+  a.column("grains/radius", "m", position, scalar_part);
+  a.column("grains/velocity", "m/s", velocity, vector_part);
+  a.column("grains/inverse_mass", "1/kg", velocity, scalar_part);
+  a.column("grains/spin", "rad/s", spin, vector_part);
+  a.column("grains/inverse_inertia", "1/(kg m^2)", spin, scalar_part);
+  a.array("grains/id", "-", id);
+  a.array("grains/material", "-", material);
+}
+
+template <class Archive, class C>
+void visit_contacts(Archive& a, C& contacts) {
+  [[maybe_unused]] auto& [i, j, image, history, history_size] = contacts;
+  a.array("contacts/i", "-", i);
+  a.array("contacts/j", "-", j);
+  a.array("contacts/image", "-", image);
+  a.history("contacts/history", "N", contacts);  // a row a contact, whatever the blocks in memory; sets history_size
+}
+
+template <class Archive, class W>
+void visit_walls(Archive& a, W& walls) {
+  a.column(
+      "walls/point", "m", walls, [](auto& w) -> auto& { return w.point; });
+  a.column(
+      "walls/normal", "-", walls, [](auto& w) -> auto& { return w.normal; });
+  a.column(
+      "walls/velocity", "m/s", walls, [](auto& w) -> auto& { return w.velocity; });
+  a.column(
+      "walls/material", "-", walls, [](auto& w) -> auto& { return w.material; });
+  a.column(
+      "walls/force", "N", walls, [](auto& w) -> auto& { return w.force; });
+  a.column(
+      "walls/work", "J", walls, [](auto& w) -> auto& { return w.work; });
+}
+
+template <class Archive, class W>
+void visit_wall_contacts(Archive& a, W& contacts) {
+  a.column(
+      "wall_contacts/grain", "-", contacts, [](auto& c) -> auto& { return c.grain; });
+  a.column(
+      "wall_contacts/wall", "-", contacts, [](auto& c) -> auto& { return c.wall; });
+  a.column(
+      "wall_contacts/history", "N", contacts, [](auto& c) -> auto& { return c.history; });
+}
+
+template <class Archive, class L>
+void visit_ledger(Archive& a, L& ledger) {
+  auto& [shear_work, friction, local_damping, mass_damping, viscous_damping, boundary, body] = ledger;
+  a.value("ledger/shear_work", "J", shear_work);
+  a.value("ledger/friction", "J", friction);
+  a.value("ledger/local_damping", "J", local_damping);
+  a.value("ledger/mass_damping", "J", mass_damping);
+  a.value("ledger/viscous_damping", "J", viscous_damping);
+  a.value("ledger/boundary", "J", boundary);
+  a.value("ledger/body", "J", body);
+}
+
+/// Archive has value(name, unit, number or array of numbers), array(name, unit, vector), column(name, unit, vector of
+/// structures, projection) and history(name, unit, contacts); S is State or const State.
+template <class Archive, class S>
+void visit_state(Archive& a, S& state) {
+  auto& [dimension, time, step, dt, cell, grains, contacts, walls, wall_contacts, ledger, friction, stage, stage_step,
+         stage_time, stage_cell, servo] = state;
+  a.value("dimension", "-", dimension);
+  a.value("time", "s", time);
+  a.value("step", "-", step);
+  a.value("dt", "s", dt);
+  visit_cell(a, cell);
+  visit_grains(a, grains);
+  visit_contacts(a, contacts);
+  visit_walls(a, walls);
+  visit_wall_contacts(a, wall_contacts);
+  visit_ledger(a, ledger);
+  a.array("friction", "-", friction);
+  a.value("stage/number", "-", stage);
+  a.value("stage/step", "-", stage_step);
+  a.value("stage/time", "s", stage_time);
+  a.value("stage/cell", "m", stage_cell);
+  a.value("stage/servo", "1/s", servo);
+}
+
+}  // namespace eg

@@ -1,0 +1,70 @@
+#include "io/vtk.hpp"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "io/text_file.hpp"
+
+namespace eg {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+/// The appended section: every array is a byte count, then its bytes; the XML names where each one starts.
+class Appended {
+ public:
+  /// The XML element of an array and its bytes into the section.
+  template <class T>
+  std::string array(const char* type, const char* name, int components, const std::vector<T>& data) {
+    const auto offset = bytes_.size();
+    const std::uint64_t size = data.size() * sizeof(T);
+    append(&size, sizeof size);
+    append(data.data(), size);
+    return fmt::format(
+        "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" offset=\"{}\"/>\n", type,
+        name, components, offset);
+  }
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  void append(const void* data, std::size_t size) { bytes_.append(static_cast<const char*>(data), size); }
+  std::string bytes_;
+};
+
+void push(std::vector<double>& all, const Vec3& v) { all.insert(all.end(), {v.x, v.y, v.z}); }
+
+}  // namespace
+
+void write_vtp(const std::string& path, const State& state) {
+  const auto& grains = state.grains;
+  const std::size_t n = grains.size();
+  std::vector<double> point, radius, velocity;
+  std::vector<std::int64_t> connectivity, offset;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3 x = grains.position[i].vec();
+    push(point, x);
+    push(velocity, grains.velocity[i].vec() + state.cell.rate * x);
+    radius.push_back(grains.radius(i));
+    connectivity.push_back(static_cast<std::int64_t>(i));
+    offset.push_back(static_cast<std::int64_t>(i) + 1);
+  }
+  Appended data;
+  std::string xml =
+      "<?xml version=\"1.0\"?>\n"
+      "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n";
+  xml += fmt::format("<Piece NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\">\n<PointData Scalars=\"radius\">\n", n);
+  xml += data.array("Float64", "radius", 1, radius);
+  xml += data.array("Float64", "velocity", 3, velocity);
+  xml += data.array("UInt32", "id", 1, grains.id);
+  xml += "</PointData>\n<Points>\n" + data.array("Float64", "position", 3, point) + "</Points>\n<Verts>\n";
+  xml += data.array("Int64", "connectivity", 1, connectivity) + data.array("Int64", "offsets", 1, offset);
+  xml += "</Verts>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";
+  write_file(path, xml + data.bytes() + "\n</AppendedData>\n</VTKFile>\n");
+}
+
+}  // namespace eg

@@ -1,0 +1,45 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <regex>
+
+#include "io/text_file.hpp"
+#include "io/vtk.hpp"
+#include "scratch.hpp"
+
+namespace {
+
+/// The numbers of one appended array, found the way a reader finds them: by the offset that the XML names.
+template <class T>
+std::vector<T> values(const std::string& file, const std::string& name) {
+  std::smatch found;
+  const std::string xml = file.substr(0, file.find("<AppendedData"));
+  if (!std::regex_search(xml, found, std::regex("Name=\"" + name + "\"[^>]* offset=\"([0-9]+)\""))) return {};
+  const std::size_t start = file.find('_', file.find("<AppendedData")) + 1 + std::stoul(found[1]);
+  std::uint64_t size = 0;
+  std::memcpy(&size, file.data() + start, sizeof size);
+  std::vector<T> data(size / sizeof(T));
+  std::memcpy(data.data(), file.data() + start + sizeof size, size);
+  return data;
+}
+
+TEST(Vtk, GrainsWithTrueVelocities) {
+  eg::State state;
+  state.cell.rate(0, 1) = 10;
+  state.grains.position = {{1, 2, 3, 0.5}, {4, 5, 6, 0.25}};
+  state.grains.velocity = {{0.1, 0, 0, 1}, {0, 0.2, 0, 1}};
+  state.grains.id = {7, 9};
+  const Scratch scratch;
+  const std::string path = scratch / "grains.vtp";
+  eg::write_vtp(path, state);
+  const std::string file = eg::read_file(path);
+
+  EXPECT_NE(file.find("NumberOfPoints=\"2\" NumberOfVerts=\"2\""), std::string::npos);
+  EXPECT_EQ(values<double>(file, "position"), (std::vector<double>{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(values<double>(file, "radius"), (std::vector{0.5, 0.25}));
+  EXPECT_EQ(values<double>(file, "velocity"), (std::vector<double>{20.1, 0, 0, 50, 0.2, 0}));
+  EXPECT_EQ(values<std::uint32_t>(file, "id"), (std::vector<std::uint32_t>{7, 9}));
+  EXPECT_EQ(values<std::int64_t>(file, "offsets"), (std::vector<std::int64_t>{1, 2}));
+}
+
+}  // namespace
