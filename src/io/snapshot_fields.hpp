@@ -42,15 +42,34 @@ void visit_grains(Archive& a, G& grains) {
 
 template <class Archive, class C>
 void visit_contacts(Archive& a, C& contacts) {
-  [[maybe_unused]] auto& [i, j, image, history, history_size] = contacts;
+  [[maybe_unused]] auto& [i, j, image, history, chunk_begin, history_size, history_vectors] = contacts;
   a.array("contacts/i", "-", i);
   a.array("contacts/j", "-", j);
   a.array("contacts/image", "-", image);
+  a.array("contacts/chunk_begin", "-", chunk_begin);
+  a.value("contacts/history_vectors", "-", history_vectors);
   a.history("contacts/history", "N", contacts);  // a row a contact, whatever the blocks in memory; sets history_size
+}
+
+template <class Archive, class L>
+void visit_list(Archive& a, L& list) {
+  auto& [begin, j, image, skin, contact_skin, longest, used, reference, reference_cell, builds, refreshes] = list;
+  a.array("list/begin", "-", begin);
+  a.array("list/j", "-", j);
+  a.array("list/image", "-", image);
+  a.value("list/skin", "m", skin);
+  a.value("list/contact_skin", "m", contact_skin);
+  a.value("list/longest", "m", longest);
+  a.value("list/used", "m", used);
+  a.array("list/reference", "m", reference);
+  a.value("list/reference_cell", "m", reference_cell);
+  a.value("list/builds", "-", builds);
+  a.value("list/refreshes", "-", refreshes);
 }
 
 template <class Archive, class W>
 void visit_walls(Archive& a, W& walls) {
+  [[maybe_unused]] const auto [point, normal, velocity, material, force, moved, work] = Wall{};  // all its fields
   a.column(
       "walls/point", "m", walls, [](auto& w) -> auto& { return w.point; });
   a.column(
@@ -67,6 +86,7 @@ void visit_walls(Archive& a, W& walls) {
 
 template <class Archive, class W>
 void visit_wall_contacts(Archive& a, W& contacts) {
+  [[maybe_unused]] const auto [grain, wall, history] = WallContact{};  // all its fields
   a.column(
       "wall_contacts/grain", "-", contacts, [](auto& c) -> auto& { return c.grain; });
   a.column(
@@ -87,12 +107,21 @@ void visit_ledger(Archive& a, L& ledger) {
   a.value("ledger/body", "J", body);
 }
 
+template <class Archive, class P>
+void visit_plan(Archive& a, P& plan) {
+  auto& [due, dt, safe, upper] = plan;
+  a.value("policy/due", "-", due);
+  a.value("policy/dt", "s", dt);
+  a.value("policy/safe", "s", safe);
+  a.value("policy/upper", "s", upper);
+}
+
 /// Archive has value(name, unit, number or array of numbers), array(name, unit, vector), column(name, unit, vector of
 /// structures, projection) and history(name, unit, contacts); S is State or const State.
 template <class Archive, class S>
 void visit_state(Archive& a, S& state) {
-  auto& [dimension, time, step, dt, cell, grains, contacts, walls, wall_contacts, ledger, friction, stage, stage_step,
-         stage_time, stage_cell, servo] = state;
+  auto& [dimension, time, step, dt, cell, grains, contacts, list, walls, wall_contacts, virial, stiffness_sum, ledger,
+         friction, stage, stage_step, stage_time, stage_cell, policy, servo] = state;
   a.value("dimension", "-", dimension);
   a.value("time", "s", time);
   a.value("step", "-", step);
@@ -100,14 +129,18 @@ void visit_state(Archive& a, S& state) {
   visit_cell(a, cell);
   visit_grains(a, grains);
   visit_contacts(a, contacts);
+  visit_list(a, list);
   visit_walls(a, walls);
   visit_wall_contacts(a, wall_contacts);
+  a.value("virial", "J", virial);
+  a.value("stiffness_sum", "J", stiffness_sum);
   visit_ledger(a, ledger);
   a.array("friction", "-", friction);
   a.value("stage/number", "-", stage);
   a.value("stage/step", "-", stage_step);
   a.value("stage/time", "s", stage_time);
   a.value("stage/cell", "m", stage_cell);
+  visit_plan(a, policy);
   a.value("stage/servo", "1/s", servo);
 }
 

@@ -35,6 +35,14 @@ class Check {
       if (const std::size_t x = number(values[k]); x >= limit)
         require(false, fmt::format("{}[{}]", name, k), x, fmt::format("must be below {}", limit));
   }
+  /// Rows of a list: ascending from 0 to `end`; empty when there is nothing.
+  void offsets(std::string_view name, std::span<const std::uint64_t> begin, std::size_t end) const {
+    if (begin.empty()) return require(end == 0, fmt::format("length of {}", name), 0, "must not be 0");
+    for (std::size_t k = 0; k < begin.size(); ++k)
+      if (begin[k] < (k > 0 ? begin[k - 1] : 0) || begin[k] > end)
+        require(false, fmt::format("{}[{}]", name, k), begin[k], fmt::format("must ascend to {}", end));
+    require(begin.back() == end, fmt::format("last of {}", name), begin.back(), fmt::format("must be {}", end));
+  }
   void finite_values(std::string_view name, std::span<const double> values) const {
     for (std::size_t k = 0; k < values.size(); ++k)
       if (!std::isfinite(values[k])) require(false, fmt::format("{}[{}]", name, k), values[k], "must be finite");
@@ -79,7 +87,17 @@ void check_contacts(const Check& check, const Contacts& contacts, std::size_t gr
   check.below("contacts/i", contacts.i, grains);
   check.below("contacts/j", contacts.j, grains);
   check.below("contacts/image", contacts.image, Cell::images);
+  check.offsets("contacts/chunk_begin", contacts.chunk_begin, contacts.size());
   check.finite_values("contacts/history", contacts.history);
+}
+
+void check_list(const Check& check, const NeighbourList& list, std::size_t grains) {
+  check.length("list/begin", list.begin.size(), grains + 1, true);
+  check.offsets("list/begin", list.begin, list.j.size());
+  check.length("list/image", list.image.size(), list.j.size(), true);
+  check.below("list/j", list.j, grains);
+  check.below("list/image", list.image, Cell::images);
+  check.length("list/reference", list.reference.size(), grains, true);
 }
 
 }  // namespace
@@ -93,6 +111,7 @@ void check_state(const Scene& scene, const State& state, const std::string& file
   check_cell(check, state.cell);
   check_grains(check, state.grains, scene.materials.size());
   check_contacts(check, state.contacts, state.grains.size());
+  check_list(check, state.list, state.grains.size());
   check.below("walls/material", state.walls, scene.materials.size(), [](const Wall& w) { return w.material; });
   check.below("wall_contacts/grain", state.wall_contacts, state.grains.size(), [](const auto& c) { return c.grain; });
   check.below("wall_contacts/wall", state.wall_contacts, state.walls.size(), [](const auto& c) { return c.wall; });

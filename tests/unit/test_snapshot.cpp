@@ -76,10 +76,16 @@ eg::State scrambled_state() {
   s.contacts.image.resize(19);
   s.contacts.history_size = 3;
   s.contacts.history.resize(24 * 3);
+  s.list.j.resize(50);
+  s.list.image.resize(50);
+  s.list.reference.resize(30);
   s.walls.resize(2);
   s.wall_contacts.resize(3);
   Scramble scramble;
   eg::visit_state(scramble, s);
+  s.contacts.chunk_begin = {0, 8, 19};
+  s.list.begin.assign(31, 50);
+  s.list.begin[0] = 0;
   s.dimension = 3;
   s.stage = 0;
   s.step = (1ull << 60) + 1;
