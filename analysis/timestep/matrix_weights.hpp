@@ -1,0 +1,47 @@
+#pragma once
+// The weights of contact splitting, and the sweeps that improve 3×3 ones.
+#include <Eigen/Core>
+#include <vector>
+
+#include "timestep/sides.hpp"
+#include "timestep/splitting.hpp"
+
+namespace eg {
+
+/// The contacts of a network with the splitting weight of each.
+class WeightedContacts {
+ public:
+  WeightedContacts(const Sides& sides, SplittingWeights weights);
+
+  /// Scalars may be changed in place, matrices by set_weights() only.
+  SplittingWeights& weights() { return weights_; }
+  void set_weights(SplittingWeights weights);
+
+  /// S_i.
+  Block block(std::size_t grain) const {
+    return sides_.block(grain, [this](const Side& side) { return weighted_stiffness(side); });
+  }
+
+  /// Gives a matrix (its scalar, at first) to every split contact of a grain with lambda above hot × maximum; contacts
+  /// that have one keep it.
+  void make_matrices(const std::vector<double>& lambda, double hot);
+
+  /// One step of all matrices towards the minimum of Σ tr S_i^(q+1), q = 2^squarings. Stationarity is T A T = B with
+  /// A = A_i S_i^q A_iᵀ and B = A_j S_j^q A_jᵀ, so T* = A⁻¹ # B, the geometric mean (Bhatia 2007); ln T moves a
+  /// step min(0.3, 2/(q+1)) towards ln T*, because all neighbours move at once.
+  void sweep(int squarings);
+
+ private:
+  struct Pair {
+    Eigen::Matrix3d first, second;  ///< k^½ W k^½ with W = 1 + T and 1 + T⁻¹
+  };
+  Eigen::Matrix3d weighted_stiffness(const Side& side) const;
+  void refresh(std::size_t matrix);
+
+  const Sides& sides_;
+  SplittingWeights weights_;
+  std::vector<Index> matrix_of_;  ///< a spring: its place in the matrices, or no_index
+  std::vector<Pair> pairs_;
+};
+
+}  // namespace eg

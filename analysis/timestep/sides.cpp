@@ -1,0 +1,67 @@
+#include "timestep/sides.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <limits>
+
+namespace eg {
+namespace {
+
+bool can_move(const Network& network, Index grain) {
+  return network.inverse_mass[grain] > 0 || (network.rotation && network.inverse_inertia[grain] > 0);
+}
+
+/// A sum of positive semidefinite terms has an error below (terms + operations a term) ε times the sum of their traces,
+/// which is the trace of the sum.
+double summation_error(const Block& block, std::size_t terms) {
+  return (8.0 * static_cast<double>(terms) + 64.0) * std::numeric_limits<double>::epsilon() * block.trace();
+}
+
+}  // namespace
+
+Sides::Sides(const Network& network)
+    : network_(network), begin_(network.size() + 1, 0), split_(network.springs.size(), 0) {
+  active_.setZero();
+  for (const int component : active_components(network)) active_(component) = 1;
+  std::vector<std::vector<Side>> lists(network.size());
+  for (std::size_t c = 0; c < network.springs.size(); ++c) {
+    const Spring& s = network.springs[c];
+    const auto spring = static_cast<Index>(c);
+    const bool moves_i = can_move(network, s.i), moves_j = s.j != no_index && can_move(network, s.j);
+    using enum Side::Role;
+    if (s.i == s.j) {
+      if (moves_i) lists[s.i].push_back({spring, alone, ContactSide::first, true});
+      continue;
+    }
+    split_[c] = moves_i && moves_j;
+    if (moves_i) lists[s.i].push_back({spring, moves_j ? first : alone, ContactSide::first, false});
+    if (moves_j) lists[s.j].push_back({spring, moves_i ? second : alone, ContactSide::second, false});
+  }
+  for (std::size_t g = 0; g < lists.size(); ++g) {
+    sides_.insert(sides_.end(), lists[g].begin(), lists[g].end());
+    begin_[g + 1] = static_cast<std::uint32_t>(sides_.size());
+  }
+}
+
+Eigen::Matrix<double, 3, 6> Sides::scaled_matrix(std::size_t grain, const Side& side) const {
+  const Spring& spring = network_.springs[side.spring];
+  Eigen::Matrix<double, 3, 6> b = side_matrix(spring, side.matrix);
+  if (side.own_image) b += side_matrix(spring, ContactSide::second);
+  b.leftCols<3>() *= std::sqrt(network_.inverse_mass[grain]);
+  b.rightCols<3>() *= network_.rotation ? std::sqrt(network_.inverse_inertia[grain]) : 0.0;
+  return b * active_.asDiagonal();
+}
+
+double block_upper_bound(const Block& block, std::size_t terms) {
+  const Eigen::SelfAdjointEigenSolver<Block> solver(block, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues()(5) + 2 * summation_error(block, terms);
+}
+
+bool block_is_below(const Block& block, std::size_t terms, double sigma) {
+  const double margin = summation_error(block, terms) + 64 * std::numeric_limits<double>::epsilon() * sigma;
+  const Block rest = (sigma - margin) * Block::Identity() - block;
+  return rest.diagonal().minCoeff() > 0 && rest.llt().info() == Eigen::Success;
+}
+
+}  // namespace eg

@@ -1,0 +1,82 @@
+#include "timestep/verify.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "assembly/apply.hpp"
+#include "eigen/vectors.hpp"
+
+namespace eg {
+namespace {
+
+class Stepper {
+ public:
+  Stepper(const Network& network, const VerifyOptions& options)
+      : a_(network, StiffnessOperator::Scaling::mass),
+        start_(random_unit_vector(a_.rows(), options.seed)),
+        force_(a_.rows()) {
+    // What cannot move must not be part of the amplitude's start: one product of A clears it.
+    a_.apply(start_, force_);
+    const double length = norm(force_);
+    if (!(length > 0)) throw std::invalid_argument("verify_by_stepping: nothing in this network can vibrate");
+    start_ = force_;
+    scale(start_, 1 / length);
+    const double excess = 0.25 * options.tolerance;  // over the limit, at which growth must show
+    mark_ = 1e3 / std::sqrt(excess);
+    const double growth = std::sqrt(8 * excess);  // z = −e^growth a step for ωΔt = 2(1 + excess)
+    longest_ = static_cast<int>(std::log(mark_ * 1e8) / growth) + 20;
+  }
+
+  /// True when the amplitude passes the mark.
+  bool grows(double dt, std::int64_t& steps) {
+    std::vector<double> x = start_, v(x.size(), 0.0);
+    for (int k = 0; k < longest_; ++k) {
+      a_.apply(x, force_);
+      add_scaled(v, -dt, force_);
+      add_scaled(x, dt, v);
+      ++steps;
+      if (k % 8 == 7 && !(norm(x) < mark_)) return true;  // also when it is no longer a number
+    }
+    return false;
+  }
+
+ private:
+  StiffnessOperator a_;
+  std::vector<double> start_, force_;
+  double mark_ = 0;
+  int longest_ = 0;
+};
+
+}  // namespace
+
+StabilityBracket verify_by_stepping(const Network& network, const VerifyOptions& options) {
+  if (!(options.guess > 0)) throw std::invalid_argument("verify_by_stepping: guess must be positive");
+  Stepper stepper(network, options);
+  StabilityBracket bracket;
+  const auto grows = [&](double dt) {
+    ++bracket.trials;
+    return stepper.grows(dt, bracket.steps);
+  };
+  double factor = 1.02;
+  if (grows(options.guess)) {
+    bracket.unstable = options.guess;
+    for (bracket.stable = options.guess / factor; grows(bracket.stable); bracket.stable /= factor *= factor)
+      bracket.unstable = bracket.stable;
+  } else {
+    bracket.stable = options.guess;
+    for (bracket.unstable = options.guess * factor; !grows(bracket.unstable); bracket.unstable *= factor *= factor)
+      bracket.stable = bracket.unstable;
+  }
+  const double first = std::log(bracket.unstable / bracket.stable), last = std::log1p(options.tolerance);
+  while (bracket.unstable > bracket.stable * (1 + options.tolerance)) {
+    const double middle = 0.5 * (bracket.stable + bracket.unstable);
+    (grows(middle) ? bracket.unstable : bracket.stable) = middle;
+    if (options.progress)
+      options.progress(std::log(first / std::log(bracket.unstable / bracket.stable)) / std::log(first / last));
+  }
+  return bracket;
+}
+
+}  // namespace eg
