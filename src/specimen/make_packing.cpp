@@ -33,7 +33,12 @@ NormalForce normal_force(const Scene& scene) {
 
 double overlap_of(const Scene& scene, const LatticeCell& cell) {
   const auto& spec = scene.specimen;
-  if (std::isnan(spec.pressure)) return spec.overlap;
+  if (std::isnan(spec.pressure)) {
+    if (spec.overlap > largest_lattice_overlap)
+      throw input_error(scene.file, 0, fmt::format("specimen.overlap = {:g}", spec.overlap),
+                        fmt::format("must not be more than {:g} of the diameter", largest_lattice_overlap));
+    return spec.overlap;
+  }
   if (spec.radius_scatter > 0)
     throw input_error(scene.file, 0, "specimen.pressure", "is not defined for a lattice with radius_scatter",
                       "give specimen.overlap and compress the lattice in a stage");

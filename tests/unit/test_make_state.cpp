@@ -199,6 +199,9 @@ TEST(MakeState, ErrorsNameTheRule) {
   EXPECT_NE(error_of(scene, packing).find("grain 1 has z = -0.25 m, outside the box [0, 1]"), std::string::npos);
 
   scene = good;
+  scene.specimen.overlap = 0.11;
+  EXPECT_EQ(error_of(scene), "test.toml: specimen.overlap = 0.11 must not be more than 0.1 of the diameter");
+  scene = good;
   scene.specimen.pressure = 1e12;
   EXPECT_NE(error_of(scene).find("specimen.pressure = 1e+12 needs overlaps of more than 0.1"), std::string::npos);
   scene.specimen.pressure = 1e5;
