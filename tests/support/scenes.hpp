@@ -1,0 +1,55 @@
+#pragma once
+// Small scenes and states that tests share.
+#include "base/random.hpp"
+#include "specimen/make_packing.hpp"
+#include "specimen/make_state.hpp"
+
+namespace eg::test {
+
+inline Material hertz_material(double g = 29e9, double nu = 0.12, double density = 2650, double friction = 0.25) {
+  Material m;
+  m.shear_modulus = g, m.poisson = nu, m.density = density, m.friction = friction;
+  return m;
+}
+inline Material linear_material(double kn, double ks, double density = 2650, double friction = 0.5) {
+  Material m;
+  m.normal_stiffness = kn, m.shear_stiffness = ks, m.density = density, m.friction = friction;
+  return m;
+}
+
+/// A scene whose one material has what the law needs (quartz-like spheres; springs of equal order of stiffness).
+inline Scene scene_of(const std::string& law, int dimension = 3) {
+  Scene s;
+  s.dimension = dimension;
+  s.contact.law = law;
+  s.materials = {law == "linear" ? linear_material(1e6, 7e5) : hertz_material()};
+  return s;
+}
+
+inline Scene lattice_scene(const std::string& law, const std::string& lattice, std::array<int, 3> cells, double overlap,
+                           double radius = 1e-3) {
+  Scene s = scene_of(law, lattice == "square" || lattice == "hexagonal" ? 2 : 3);
+  s.specimen.source = SpecimenSpec::Source::lattice;
+  s.specimen.lattice = lattice, s.specimen.cells = cells, s.specimen.overlap = overlap, s.specimen.radius = radius;
+  return s;
+}
+
+inline State state_of(const Scene& scene) { return make_state(scene, make_packing(scene)); }
+
+/// A random overlapping cluster in free space: `count` grains of radius 0.7…1.3 mm, thrown into a cube that they overfill.
+inline State cluster(const Scene& scene, std::size_t count, std::uint64_t seed, double fill = 1.2) {
+  Random random(seed);
+  Packing p;
+  p.dimension = scene.dimension;
+  const double edge = 2e-3 * (scene.dimension == 3 ? std::cbrt(static_cast<double>(count) / fill) : std::sqrt(static_cast<double>(count) / fill));
+  p.box = {edge, edge, scene.dimension == 3 ? edge : 1.0};
+  for (std::size_t i = 0; i < count; ++i) {
+    p.position.push_back({random.uniform(0, edge), random.uniform(0, edge), scene.dimension == 3 ? random.uniform(0, edge) : 0.0});
+    p.radius.push_back(random.uniform(0.7e-3, 1.3e-3));
+  }
+  Scene free = scene;
+  free.boundary.kind = BoundarySpec::Kind::free;
+  return make_state(free, p);
+}
+
+}  // namespace eg::test
