@@ -1,12 +1,40 @@
 #include "io/hdf5_file.hpp"
 
-#include <cerrno>
-#include <cstring>
+#include <hdf5.h>
+
 #include <filesystem>
+#include <type_traits>
 
 #include "base/error.hpp"
 
 namespace eg {
+
+static_assert(std::is_same_v<hid_t, Hdf5Id> && std::is_same_v<hsize_t, Hdf5Shape::value_type>);
+
+template <>
+Hdf5Id hdf5_type<double>() {
+  return H5T_IEEE_F64LE;
+}
+template <>
+Hdf5Id hdf5_type<int>() {
+  return H5T_STD_I32LE;
+}
+template <>
+Hdf5Id hdf5_type<std::uint8_t>() {
+  return H5T_STD_U8LE;
+}
+template <>
+Hdf5Id hdf5_type<std::uint16_t>() {
+  return H5T_STD_U16LE;
+}
+template <>
+Hdf5Id hdf5_type<std::uint32_t>() {
+  return H5T_STD_U32LE;
+}
+template <>
+Hdf5Id hdf5_type<std::uint64_t>() {
+  return H5T_STD_U64LE;
+}
 
 namespace {
 
@@ -14,6 +42,7 @@ namespace {
 class Quiet {
  public:
   Quiet() {
+    H5dont_atexit();  // every handle is closed here; HDF5's own closing at exit complains about files it could not open
     H5Eget_auto2(H5E_DEFAULT, &print_, &data_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   }

@@ -1,8 +1,5 @@
 #pragma once
 // As much of HDF5 as a snapshot needs: datasets of numbers with a unit, texts, and one-line errors. Private to io.
-#include <hdf5.h>
-
-#include <concepts>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -10,38 +7,33 @@
 
 namespace eg {
 
+using Hdf5Id = std::int64_t;  ///< hid_t; hdf5.h itself stays in the .cpp
+
 /// Owns one HDF5 identifier.
 class Hdf5Handle {
  public:
-  using Closer = herr_t (*)(hid_t);
-  Hdf5Handle(hid_t id, Closer close) : id_(id), close_(close) {}
+  using Closer = int (*)(Hdf5Id);
+  Hdf5Handle(Hdf5Id id, Closer close) : id_(id), close_(close) {}
   Hdf5Handle(Hdf5Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
   Hdf5Handle& operator=(Hdf5Handle&&) = delete;
   ~Hdf5Handle() {
     if (id_ >= 0) close_(id_);
   }
   bool valid() const { return id_ >= 0; }
-  operator hid_t() const { return id_; }
+  operator Hdf5Id() const { return id_; }
   /// Closes now; false when that fails, as it does when buffered data cannot be written.
   bool close() { return close_(std::exchange(id_, -1)) >= 0; }
 
  private:
-  hid_t id_;
+  Hdf5Id id_;
   Closer close_;
 };
 
-/// HDF5's type of a number; the same in memory and in the file.
+/// HDF5's type of a number, the same in memory and in the file: double, int, uint8, uint16, uint32, uint64.
 template <class T>
-hid_t hdf5_type() {
-  if constexpr (std::same_as<T, double>) return H5T_IEEE_F64LE;
-  if constexpr (std::same_as<T, std::uint8_t>) return H5T_STD_U8LE;
-  if constexpr (std::same_as<T, std::uint16_t>) return H5T_STD_U16LE;
-  if constexpr (std::same_as<T, std::uint32_t>) return H5T_STD_U32LE;
-  if constexpr (std::same_as<T, std::uint64_t>) return H5T_STD_U64LE;
-  if constexpr (std::same_as<T, int>) return H5T_STD_I32LE;
-}
+Hdf5Id hdf5_type();
 
-using Hdf5Shape = std::vector<hsize_t>;  ///< empty: a single number
+using Hdf5Shape = std::vector<unsigned long long>;  ///< empty: a single number
 
 /// A file that is written once, from empty. Groups in dataset names ("grains/radius") are made as needed.
 class Hdf5Writer {
@@ -56,7 +48,7 @@ class Hdf5Writer {
   void close();
 
  private:
-  void write(const std::string& name, const std::string& unit, const Hdf5Shape&, hid_t type, const void* data);
+  void write(const std::string& name, const std::string& unit, const Hdf5Shape&, Hdf5Id type, const void* data);
   void require(bool success) const;
 
   std::string shown_;
@@ -74,7 +66,7 @@ class Hdf5Reader {
   template <class T>
   std::vector<T> read(const std::string& name, Hdf5Shape& shape) const {
     const Hdf5Handle set = open(name, hdf5_type<T>(), shape);
-    hsize_t size = 1;
+    std::size_t size = 1;
     for (const auto edge : shape) size *= edge;
     std::vector<T> data(size);
     read(set, name, hdf5_type<T>(), data.data());
@@ -85,8 +77,8 @@ class Hdf5Reader {
   [[noreturn]] void damaged(const std::string& name, const std::string& fault) const;
 
  private:
-  Hdf5Handle open(const std::string& name, hid_t type, Hdf5Shape& shape) const;
-  void read(const Hdf5Handle& set, const std::string& name, hid_t type, void* data) const;
+  Hdf5Handle open(const std::string& name, Hdf5Id type, Hdf5Shape& shape) const;
+  void read(const Hdf5Handle& set, const std::string& name, Hdf5Id type, void* data) const;
 
   std::string path_;
   Hdf5Handle file_;

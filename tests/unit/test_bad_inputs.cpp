@@ -1,0 +1,397 @@
+// What a user can get wrong, and the line that answers. One table a kind of input; every message is given in full.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "io/hdf5_file.hpp"
+#include "io/history.hpp"
+#include "io/packing_file.hpp"
+#include "io/scene_file.hpp"
+#include "io/snapshot.hpp"
+#include "io/text_file.hpp"
+#include "scratch.hpp"
+
+namespace {
+
+const std::vector<std::string> good_scene{"dimension = 3",                     // 1
+                                          "[material.quartz]",                 // 2
+                                          "shear_modulus = 29e9",              // 3
+                                          "poisson = 0.12",                    // 4
+                                          "density = 2650",                    // 5
+                                          "friction = 0.25",                   // 6
+                                          "[contact]",                         // 7
+                                          "law = \"hertz-mindlin\"",           // 8
+                                          "[specimen]",                        // 9
+                                          "source = \"cloud\"",                // 10
+                                          "count = 100",                       // 11
+                                          "grading = { radius = 1e-3 }",       // 12
+                                          "[boundary]",                        // 13
+                                          "type = \"periodic\"",               // 14
+                                          "[timestep]",                        // 15
+                                          "policy = \"certified\"",            // 16
+                                          "[[stage]]",                         // 17
+                                          "name = \"compress\"",               // 18
+                                          "stress = { isotropic = 100e3 }",    // 19
+                                          "until = { stress_error = 1e-3 }"};  // 20
+
+/// The good scene with other text in the place of one line (0: the whole text).
+std::string scene_with(int line, const std::string& text) {
+  if (line == 0) return text;
+  std::string all;
+  for (std::size_t k = 0; k < good_scene.size(); ++k)
+    all += (static_cast<int>(k) + 1 == line ? text : good_scene[k]) + "\n";
+  return all;
+}
+
+/// The message of the error that f throws, or "" when it throws none.
+std::string message_of(const std::function<void()>& f) {
+  try {
+    f();
+  } catch (const eg::InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+struct SceneCase {
+  int line;
+  std::string text, message;
+};
+
+const std::vector<SceneCase> scene_cases{
+    // the file as a whole
+    {0, "", "s.toml: is an empty scene: it holds no keys; see cases/ for examples"},
+    {0, "# nothing\n", "s.toml: is an empty scene: it holds no keys; see cases/ for examples"},
+    {1, "dimension 3", "s.toml:1: is not valid TOML: Error while parsing key-value pair: expected '=', saw '3'"},
+    {5, "poisson = 0.2",
+     "s.toml:5: is not valid TOML: Error while parsing key-value pair: cannot redefine existing floating-point "
+     "'poisson'"},
+    // keys
+    {1, "dimensoin = 3", "s.toml:1: dimensoin is not a known key; did you mean \"dimension\"?"},
+    {1, "title = \"x\"", "s.toml:1: dimension is missing; add \"dimension\" to the top of the file"},
+    {1, "dimension = 3\nspeed = 1", "s.toml:2: speed is not a known key; did you mean \"seed\"?"},
+    {1, "dimension = 3\nqwertyuiop = 1",
+     "s.toml:2: qwertyuiop is not a known key; known here: boundary, contact, damping, dimension, gravity, material, "
+     "record, rotation, seed, specimen, stage, timestep, title"},
+    {7, "[contct]", "s.toml:7: contct is not a known key; did you mean \"contact\"?"},
+    {11, "count = 100\ncells = [1, 1, 1]",
+     "s.toml:12: specimen.cells is not a known key; known here: aspect, count, grading, solid_fraction, source"},
+    {20, "until = { stress_eror = 1e-3 }",
+     "s.toml:20: stage[1].until.stress_eror is not a known key; did you mean \"stress_error\"?"},
+    {20, "", "s.toml:17: stage[1].until is missing; add \"until\" to [stage[1]]"},
+    // types
+    {1, "dimension = \"3\"",
+     "s.toml:1: dimension = \"3\" must be a number; write it in SI units, without quotes and without a unit"},
+    {1, "dimension = 3\nrotation = \"no\"",
+     "s.toml:2: rotation = \"no\" must be true or false; write it without quotes"},
+    {1, "dimension = 3\ntitle = 7", "s.toml:2: title = 7 must be a text; put it in quotes"},
+    {11, "count = 10.5", "s.toml:11: specimen.count = 10.5 must be a whole number"},
+    {5, "density = true", "s.toml:5: material.quartz.density = true must be a number"},
+    {8, "law = 1", "s.toml:8: contact.law = 1 must be a text; put it in quotes"},
+    {19, "stress = { isotropic = \"100 kPa\" }",
+     "s.toml:19: stage[1].stress.isotropic = \"100 kPa\" must be a number; write it in SI units, without quotes and "
+     "without a unit"},
+    {19, "stress = 100e3",
+     "s.toml:19: stage[1].stress = 100000 must be a table; write [stage[1].stress] or "
+     "stage[1].stress = { … }"},
+    {17, "[stage]", "s.toml:17: stage must be an array of tables; write [[stage]]"},
+    {12, "grading = { passing = [[1e-3, 0], 2e-3] }",
+     "s.toml:12: specimen.grading.passing[2] = 0.002 must be an array of two numbers"},
+    // numbers out of range
+    {1, "dimension = 4", "s.toml:1: dimension = 4 must lie in [2, 3]"},
+    {1, "dimension = 3\nseed = -1", "s.toml:2: seed = -1 must lie in [0, 9007199254740991]"},
+    {1, "dimension = 3\ngravity = [0, -9.81]", "s.toml:2: gravity must hold 3 numbers, not 2"},
+    {1, "dimension = 3\ngravity = [0, nan, 0]", "s.toml:2: gravity[2] = nan must be a finite number"},
+    {4, "poisson = 0.62", "s.toml:4: material.quartz.poisson = 0.62 must lie in (-1, 0.5)"},
+    {4, "poisson = nan", "s.toml:4: material.quartz.poisson = nan must lie in (-1, 0.5)"},
+    {3, "shear_modulus = inf", "s.toml:3: material.quartz.shear_modulus = inf must be finite and > 0"},
+    {5, "density = 0", "s.toml:5: material.quartz.density = 0 must be finite and > 0"},
+    {6, "friction = -0.1", "s.toml:6: material.quartz.friction = -0.1 must be finite and >= 0"},
+    {11, "count = 0", "s.toml:11: specimen.count = 0 must lie in [1, 4000000000]"},
+    {12, "grading = { radius = -1e-3 }", "s.toml:12: specimen.grading.radius = -0.001 must be finite and > 0"},
+    {16, "safety = 1.5", "s.toml:16: timestep.safety = 1.5 must lie in (0, 1]"},
+    {16, "policy = \"fixed\"\nfixed = 0", "s.toml:17: timestep.fixed = 0 must be finite and > 0"},
+    {15, "[damping]\nlocal = 1\n[timestep]", "s.toml:16: damping.local = 1 must lie in [0, 1)"},
+    {19, "stress = { isotropic = 0 }", "s.toml:19: stage[1].stress.isotropic = 0 must be finite and > 0"},
+    {20, "until = { steps = 0 }", "s.toml:20: stage[1].until.steps = 0 must lie in [1, 1000000000000000]"},
+    // names
+    {8, "law = \"hertz-mindlim\"",
+     "s.toml:8: contact.law = \"hertz-mindlim\" must be one of \"linear\", \"hertz-mindlin\", "
+     "\"hertz-mindlin-rescale\"; did you mean \"hertz-mindlin\"?"},
+    {10, "source = \"rain\"", "s.toml:10: specimen.source = \"rain\" must be one of \"lattice\", \"cloud\", \"file\""},
+    {12, "grading = \"ottawa\"", "s.toml:12: specimen.grading = \"ottawa\" must be one of \"toyoura\""},
+    {14, "type = \"wall\"", "s.toml:14: boundary.type = \"wall\" must be one of \"periodic\", \"free\", \"box\""},
+    {14, "type = \"box\"\nwall_material = \"glass\"",
+     "s.toml:15: boundary.wall_material = \"glass\" must be one of \"quartz\""},
+    {16, "policy = \"certfied\"",
+     "s.toml:16: timestep.policy = \"certfied\" must be one of \"certified\", \"fixed\", \"estimate:NAME\"; did you "
+     "mean "
+     "\"certified\"?"},
+    {18, "name = \"../up\"", "s.toml:18: stage[1].name = \"../up\" must be made of letters, digits, - and _"},
+    {18, "name = \"\"", "s.toml:18: stage[1].name = \"\" must not be empty"},
+    // keys that do not go together
+    {3, "",
+     "s.toml:4: material.quartz.poisson = 0.12 needs shear_modulus beside it for the law \"hertz-mindlin\"; add "
+     "shear_modulus"},
+    {8, "law = \"linear\"",
+     "s.toml:2: material.quartz lacks the constants of the law \"linear\"; add normal_stiffness "
+     "and shear_stiffness, or effective_modulus and stiffness_ratio"},
+    {10, "source = \"lattice\"\nlattice = \"fcc\"\nradius = 1e-3\noverlap = 1e-3\npressure = 1e5",
+     "s.toml:14: specimen.pressure = 100000 contradicts overlap; keep one of the two"},
+    {10, "source = \"lattice\"\nlattice = \"square\"",
+     "s.toml:11: specimen.lattice = \"square\" is a lattice of 2 dimensions; set dimension = 2"},
+    {10, "source = \"lattice\"\nlattice = \"fcc\"\ncells = [1, 2.5, 1]",
+     "s.toml:12: specimen.cells must hold whole numbers"},
+    {10, "source = \"lattice\"\nlattice = \"fcc\"\ncells = [1, 2]",
+     "s.toml:12: specimen.cells must hold 3 numbers, not 2"},
+    {10, "source = \"lattice\"\nlattice = \"fcc\"\ncells = [100000, 100000, 1]",
+     "s.toml:12: specimen.cells make more than 500 million cells"},
+    {10, "source = \"file\"", "s.toml:9: specimen.path is missing; add \"path\" to [specimen]"},
+    {12, "grading = { min_radius = 2e-3, max_radius = 1e-3 }",
+     "s.toml:12: specimen.grading.max_radius = 0.001 must not be below min_radius"},
+    {12, "grading = { passing = [[1e-3, 0], [1e-3, 1]] }",
+     "s.toml:12: specimen.grading.passing must ascend in diameter and in passing, but row 2 does not"},
+    {12, "grading = { passing = [[1e-3, 0], [2e-3, 100]] }",
+     "s.toml:12: specimen.grading.passing must run from passing 0 to passing 1; write fractions of the mass, not per "
+     "cent"},
+    {14, "type = \"free\"", "s.toml:19: stage[1].stress needs a periodic cell; set boundary.type = \"periodic\""},
+    {14, "type = \"periodic\"\n[[boundary.wall]]\nname = \"floor\"",
+     "s.toml:15: boundary.wall cannot stand in a cell that is periodic in every direction; set boundary.type to "
+     "\"free\" or \"box\""},
+    {14, "type = \"free\"\n[[boundary.wall]]\nname = \"floor\"\npoint = [0, 0, 0]\nnormal = [0, 0, 0]",
+     "s.toml:18: boundary.wall[1].normal must have a length above 0"},
+    {16, "fixed = 1e-6",
+     "s.toml:16: timestep.fixed = 1e-06 is read with policy = \"fixed\" only; remove one of the two"},
+    {19, "stress = { isotropic = 100e3, x = 2e5 }",
+     "s.toml:19: stage[1].stress.x = 200000 drives a component that is driven already; give each component one stress "
+     "or one rate"},
+    {19, "stress = { z = 100e3 }\nstrain_rate = { z = 0.1 }",
+     "s.toml:20: stage[1].strain_rate.z = 0.1 drives a component that is driven already; give each component one "
+     "stress "
+     "or one rate"},
+    {19, "stress = { x = 1e5 }\nhold = { mean_stress = 1e5, equal = [\"x\"] }",
+     "s.toml:20: stage[1].hold.equal drives a component that is driven already; give each component one stress or one "
+     "rate"},
+    {19, "hold = { mean_stress = 1e5, equal = [\"w\"] }",
+     "s.toml:19: stage[1].hold.equal[1] = \"w\" must be one of \"x\", \"y\", \"z\"; did you mean \"x\"?"},
+    {19, "hold = { mean_stress = 1e5, equal = [] }",
+     "s.toml:19: stage[1].hold.equal must name at least one axis; for example equal = [\"x\", \"y\"]"},
+    {20, "until = {}",
+     "s.toml:20: stage[1].until names no condition; give at least one of stress_error, unbalanced_force, time, steps, "
+     "axial_strain"},
+    {19, "",
+     "s.toml:20: stage[1].until.stress_error = 0.001 needs a stress that is aimed at; add stress or hold to the "
+     "stage"},
+    {20, good_scene[19] + "\n[[stage]]\nname = \"compress\"\nuntil = { steps = 1 }",
+     "s.toml:22: stage[2].name = \"compress\" is the name of another stage already; give every stage a name of its "
+     "own"},
+    {6, "friction = 0.25\n[material.a]\ndensity = 1",
+     "s.toml:7: material.a.friction is missing; add \"friction\" to [material.a]"},
+    {8, "law = \"linear\"\n[material.a]\ndensity = 1\nfriction = 0\nnormal_stiffness = 1\neffective_modulus = 1",
+     "s.toml:2: material.quartz lacks the constants of the law \"linear\"; add normal_stiffness and shear_stiffness, "
+     "or "
+     "effective_modulus and stiffness_ratio"},
+};
+
+const std::string plane =
+    "dimension = 2\ncontact.law = \"linear\"\nspecimen = { source = \"cloud\", count = 3, grading = "
+    "{ radius = 1 } }\nboundary.type = \"periodic\"\n";
+const std::string soft = "[material.soft]\ndensity = 1\nfriction = 0\nnormal_stiffness = 1\nshear_stiffness = 1\n";
+
+const std::vector<SceneCase> plane_cases{
+    {0, plane + soft + "effective_modulus = 1\nstiffness_ratio = 1\n",
+     "s.toml:10: material.soft.effective_modulus = 1 contradicts normal_stiffness; keep one pair of the two"},
+    {0, plane + soft + "[material.hard]\ndensity = 1\nfriction = 0\neffective_modulus = 1\nstiffness_ratio = 1\n",
+     "s.toml:10: material.hard gives other constants than material.soft; describe all materials by the same constants"},
+    {0, plane + soft + "[[stage]]\nname = \"a\"\nstrain_rate = { z = 1 }\nuntil = { steps = 1 }\n",
+     "s.toml:12: stage[1].strain_rate.z = 1 is not a component of a 2D scene; a 2D scene has x, y and xy"},
+    {0, "dimension = 2\nmaterial = {}\n", "s.toml:2: material holds no material; add [material.NAME]"},
+};
+
+TEST(BadInputs, GoodSceneIsGood) {
+  EXPECT_EQ(message_of([] { eg::parse_scene(scene_with(1, good_scene[0]), "s.toml"); }), "");
+  EXPECT_EQ(message_of([] { eg::parse_scene(plane + soft, "s.toml"); }), "");
+}
+
+TEST(BadInputs, Scenes) {
+  for (const auto& cases : {scene_cases, plane_cases})
+    for (const auto& c : cases)
+      EXPECT_EQ(message_of([&] { eg::parse_scene(scene_with(c.line, c.text), "s.toml"); }), c.message)
+          << "line " << c.line << " := " << c.text;
+}
+
+struct PackingCase {
+  std::string text, message;
+};
+
+const std::vector<PackingCase> packing_cases{
+    {"", "p.txt: is an empty packing: it holds no numbers; write `Lx Ly Lz`, then `x y z r` a line"},
+    {"1 1 1\n", "p.txt: is an empty packing: no grain follows the cell; write `x y z r` a line"},
+    {"1 1 1 1\n",
+     "p.txt:1: the first line must hold 2 or 3 numbers, not 4; write the edges of the periodic cell, `Lx Ly "
+     "Lz` (2D: `Lx Ly`)"},
+    {"1 0 1\n", "p.txt:1: Ly = 0 must be > 0; edges are lengths in metres"},
+    {"1 1 1\n0 0 0 -0.1\n", "p.txt:2: radius = -0.1 must be > 0"},
+    {"1 1 1\n# c\n0 nan 0 0.1\n", "p.txt:3: \"nan\" is not a finite number; write numbers between blanks"},
+    {"1 1 1\n0,0,0,0.1\n", "p.txt:2: \"0,0,0,0.1\" is not a finite number; write numbers between blanks"},
+    {"1 1 1\n0 1e999 0 0.1\n", "p.txt:2: \"1e999\" is not a finite number; write numbers between blanks"},
+    {"1 1 1\n0 0 0 0.1 5\n", "p.txt:2: the line holds 5 numbers, not 4; write `x y z r`"},
+    {"1 1\n0 0 0 0.1\n", "p.txt:2: the line holds 4 numbers, not 3; write `x y r`"},
+    {"1 1 1\n0 0 0 0.1\n0 0",
+     "p.txt:3: the last line holds 2 numbers, not 4; the file ends in the middle of a line; get a whole copy"},
+    {"1 1 2\n0 0 0 0.6\n",
+     "p.txt:2: radius = 0.6 makes a grain larger than the cell, whose shortest edge is 1; all "
+     "lengths are in metres"},
+    {std::string("1 1 1\n0\0 0 0 0.1\n", 16),
+     "p.txt: is a binary file, but a packing is plain text; write `Lx Ly Lz`, then `x y z r` a line"},
+    {"\xFD"
+     "7zXZ...",
+     "p.txt: is packed by xz, but a packing is plain text; unpack it first: unxz FILE"},
+};
+
+TEST(BadInputs, Packings) {
+  for (const auto& c : packing_cases)
+    EXPECT_EQ(message_of([&] { eg::parse_packing(c.text, "p.txt"); }), c.message) << c.text;
+}
+
+eg::State good_state() {
+  eg::State s;
+  s.grains.position = {{0, 0, 0, 1}, {1, 0, 0, 1}};
+  s.grains.velocity = {{0, 0, 0, 1}, {0, 0, 0, 1}};
+  s.grains.id = {1, 2};
+  s.contacts.i = s.contacts.j = std::vector<eg::Index>(8, 0);
+  s.contacts.j[0] = 1;
+  s.contacts.chunk_begin = {0, 8};
+  s.friction = {0.25};
+  return s;
+}
+
+struct StateCase {
+  std::function<void(eg::State&)> spoil;
+  std::string message;  ///< after "NAME: ", before the remedy
+};
+
+const double nan = std::numeric_limits<double>::quiet_NaN();
+
+const std::vector<StateCase> state_cases{
+    {[](eg::State&) {}, ""},
+    {[](eg::State& s) { s.dimension = 2; }, "dimension = 2 must be that of the scene, 3"},
+    {[](eg::State& s) { s.dt = -1; }, "dt = -1 must be finite and >= 0"},
+    {[](eg::State& s) { s.grains.position[1].y = nan; }, "grains/position[1] = (1, nan, 0) must be finite"},
+    {[](eg::State& s) { s.grains.position[1].w = 0; }, "grains/radius[1] = 0 must be > 0"},
+    {[](eg::State& s) { s.grains.velocity[0].w = -1; },
+     "grains/velocity[0] = (0, 0, 0; -1) must be finite, the inverse mass not negative"},
+    {[](eg::State& s) { s.grains.id.pop_back(); }, "length of grains/id = 1 must be 2"},
+    {[](eg::State& s) {
+       s.grains.material = {0, 1};
+     },
+     "grains/material[1] = 1 must be below 1"},
+    {[](eg::State& s) { s.contacts.j[0] = 2; }, "contacts/j[0] = 2 must be below 2"},
+    {[](eg::State& s) { s.contacts.image.assign(8, 27); }, "contacts/image[0] = 27 must be below 27"},
+    {[](eg::State& s) {
+       s.contacts.chunk_begin = {0, 9};
+     },
+     "contacts/chunk_begin[1] = 9 must ascend to 8"},
+    {[](eg::State& s) {
+       s.wall_contacts = {{0, 3}};
+     },
+     "wall_contacts/wall[0] = 3 must be below 0"},
+    {[](eg::State& s) { s.cell.h(1, 1) = 0; }, "cell/matrix diagonal = 0 must be > 0"},
+    {[](eg::State& s) {
+       s.friction = {0, 0};
+     },
+     "length of friction = 2 must be 1"},
+    {[](eg::State& s) { s.stage = 2; }, "stage/number = 2 must not pass the number of stages, 1"},
+};
+
+TEST(BadInputs, States) {
+  const Scratch scratch;
+  const std::string path = scratch / "state.h5";
+  const auto scene = eg::parse_scene(scene_with(1, good_scene[0]));
+  for (const auto& c : state_cases) {
+    auto state = good_state();
+    c.spoil(state);
+    eg::write_snapshot(path, scene, state);
+    const std::string expected =
+        c.message.empty() ? "" : path + ": " + c.message + "; the file is damaged; use another snapshot";
+    EXPECT_EQ(message_of([&] { eg::read_snapshot(path); }), expected);
+  }
+}
+
+TEST(BadInputs, Files) {
+  const Scratch scratch;
+  const std::string path = scratch / "file";
+  const auto snapshot_message = [&] { return message_of([&] { eg::read_snapshot(path); }); };
+  EXPECT_EQ(message_of([&] { eg::read_scene(path); }),
+            path + ": cannot be opened (No such file or directory); check the path");
+  EXPECT_EQ(snapshot_message(), path + ": cannot be opened (No such file or directory); check the path");
+  EXPECT_EQ(message_of([&] { eg::read_packing(scratch.folder()); }),
+            scratch.folder() + ": is a folder, not a file; name a file in it");
+
+  eg::write_file(path, "1 1 1\n0 0 0 0.1\n");
+  EXPECT_FALSE(eg::looks_like_snapshot(path));
+  EXPECT_EQ(snapshot_message(),
+            path + ": is no snapshot: it is not an HDF5 file; name a .h5 file that a run has written");
+
+  eg::write_snapshot(path, eg::parse_scene(scene_with(1, good_scene[0])), good_state());
+  const std::string whole = eg::read_file(path);
+  eg::write_file(path, whole.substr(0, whole.size() / 2));
+  EXPECT_EQ(snapshot_message(),
+            path + ": is damaged: HDF5 cannot open it, it may have been cut short; use another snapshot");
+
+  const auto only = [&](auto... version) {
+    eg::Hdf5Writer file(path, path);
+    (file.write("format_version", "", {}, std::vector<int>{version}), ...);
+    file.write_text("program_version", "9.9");
+    file.write_text("scene/text", scene_with(1, good_scene[0]));
+    file.write_text("scene/file", "s.toml");
+    file.close();
+  };
+  only();
+  EXPECT_EQ(snapshot_message(), path +
+                                    ": is no snapshot: it is an HDF5 file of another program; name a .h5 file that a "
+                                    "run has written");
+  only(2);
+  EXPECT_EQ(snapshot_message(), path +
+                                    ": format_version = 2 must be 1 for eigengrain 0.1.0; read it with the version "
+                                    "that wrote it, 9.9");
+  only(1);
+  EXPECT_EQ(snapshot_message(), path + ": is damaged: dataset dimension is missing; use another snapshot");
+}
+
+/// A snapshot with one stretch of bytes changed either reads or gives one line; it never crashes.
+TEST(BadInputs, DamagedSnapshotsGiveOneLine) {
+  const Scratch scratch;
+  const std::string path = scratch / "state.h5";
+  eg::write_snapshot(path, eg::parse_scene(scene_with(1, good_scene[0])), good_state());
+  const std::string whole = eg::read_file(path);
+  int refused = 0;
+  for (std::size_t at = 0; at + 8 < whole.size(); at += 211) {
+    std::string spoilt = whole;
+    for (std::size_t k = 0; k < 8; ++k) spoilt[at + k] = static_cast<char>(~spoilt[at + k]);
+    eg::write_file(path, spoilt);
+    const auto message = message_of([&] { eg::read_snapshot(path); });
+    refused += !message.empty();
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+  EXPECT_GT(refused, 10);
+}
+
+TEST(BadInputs, AreManyAndDistinct) {
+  std::vector<std::string> messages;
+  for (const auto& c : scene_cases) messages.push_back(c.message);
+  for (const auto& c : packing_cases) messages.push_back(c.message);
+  for (const auto& c : state_cases) messages.push_back(c.message);
+  std::ranges::sort(messages);
+  messages.erase(std::unique(messages.begin(), messages.end()), messages.end());
+  EXPECT_GE(messages.size(), 80u);
+}
+
+}  // namespace
