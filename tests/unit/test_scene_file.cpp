@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "io/scene_file.hpp"
 
@@ -182,6 +183,16 @@ TEST(SceneFile, ReadsEveryKindOfGrading) {
   EXPECT_EQ(curve.kind, table);
   EXPECT_EQ(curve.passing[1], (std::array{2e-3, 0.4}));
   EXPECT_EQ(curve.max_radius, 2e-3);
+}
+
+TEST(SceneFile, ReadsEveryCaseOfTheProject) {
+  int cases = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(EIGENGRAIN_SOURCE_DIR "/cases"))
+    if (entry.path().extension() == ".toml") {
+      ++cases;
+      EXPECT_NO_THROW(eg::read_scene(entry.path().string())) << entry.path();
+    }
+  EXPECT_GT(cases, 0);
 }
 
 }  // namespace
