@@ -80,7 +80,7 @@ std::vector<TangentBlock> consistent_blocks(const Scene& scene, const State& sta
     visit_contacts(scene, state, [&](const ContactPoint& p) {
       const auto mi = state.grains.material_of(p.i);
       const auto mj = p.j == no_index ? state.walls[p.wall].material : state.grains.material_of(p.j);
-      if (state.contacts.history_size == 0) blocks.push_back(tangent<Frictionless<Law>>(p, state, table[mi * kinds + mj], arms));
+      if (state.contacts.history_vectors == 0) blocks.push_back(tangent<Frictionless<Law>>(p, state, table[mi * kinds + mj], arms));
       else blocks.push_back(tangent<Law>(p, state, table[mi * kinds + mj], arms));
     });
   });

@@ -86,7 +86,7 @@ struct ContactForce {
   Vec<S> moment;               ///< n × T [N]; times the arm: moment on each grain
   Response<S> law;             ///< the law's own part, without dashpots
   Vec<S> shear_before;         ///< T of the last step, turned into the new plane [N]
-  S viscous_work;              ///< dissipated by the dashpots in the increment [J]
+  Vec<S> dashpot;              ///< the dashpots' part of on_j [N]
 };
 
 /// Force of one contact. `touching` masks lanes that overlap; history of the others is cleared.
@@ -101,27 +101,23 @@ EG_INLINE ContactForce<S> interact(const typename Law::template Pair<S>& pair, c
   out.law = Law::template respond<S>(pair, strain, history);
   for (auto& h : history) h = select(touching, h, S(0.0));
 
-  S normal = out.law.normal.force;
-  Vec<S> shear = out.law.shear;
-  out.viscous_work = S(0.0);
+  out.on_j = g.n * out.law.normal.force;
+  if constexpr (Law::history_vectors > 0) {
+    out.on_j -= out.law.shear;
+    out.moment = cross(g.n, out.law.shear);
+  }
   if constexpr (damped) {
     const S cn = S(2.0) * dashpot.normal_ratio * sqrt(dashpot.mass * out.law.normal.stiffness) * dashpot.per_dt;
-    const S fn = select(touching, cn * inc.approach, S(0.0));
-    normal = normal + fn;
-    out.viscous_work = fn * inc.approach;
+    out.dashpot = g.n * select(touching, cn * inc.approach, S(0.0));
     if constexpr (Law::history_vectors > 0) {  // a sliding contact has no shear dashpot, or it would exceed Coulomb's limit
       const Vec<S> lost = out.law.unslipped - out.law.shear;
       const S cs = S(2.0) * dashpot.shear_ratio * sqrt(dashpot.mass * out.law.normal.tangential) * dashpot.per_dt;
       const S stick = select(dot(lost, lost) > S(0.0), S(0.0), cs);
       const Vec<S> fs = inc.slip * select(touching, stick, S(0.0));
-      shear += fs;
-      out.viscous_work = out.viscous_work + dot(fs, inc.slip);
+      out.dashpot -= fs;
+      out.moment += cross(g.n, fs);
     }
-  }
-  out.on_j = g.n * normal;
-  if constexpr (Law::history_vectors > 0) {
-    out.on_j -= shear;
-    out.moment = cross(g.n, shear);
+    out.on_j += out.dashpot;
   }
   return out;
 }

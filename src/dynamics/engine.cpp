@@ -15,14 +15,16 @@ Engine::Engine(const Scene& scene, State& state, bool scalar) : scene_(scene), s
   for (const auto& s : scene.stages) frictionless = frictionless && s.friction.value_or(0) == 0;
   loop_ = make_force_loop(scene.contact.law, frictionless, state_.grains.rotates());
   loop_->set_materials(scene.materials, state_.friction, scene.dimension);
-  options_ = {arms_of(scene), scene.damping.normal_ratio, scene.damping.shear_ratio, true, scalar};
+  const bool viscous = scene.energy && (scene.damping.normal_ratio > 0 || scene.damping.shear_ratio > 0);
+  options_ = {arms_of(scene), scene.damping.normal_ratio, scene.damping.shear_ratio, true, viscous, scalar};
   kick_ = {scene.damping.local, scene.damping.mass, scene.gravity, scene.dimension};
   last_dt_ = state_.dt;
   if (!state_.list.begin.empty()) {  // resumed
     refresh_workspace();
     return;
   }
-  state_.contacts.history_size = loop_->history_size();
+  state_.contacts.tail_vectors = viscous ? 1 : 0;
+  state_.contacts.history_size = loop_->history_size() + 3 * state_.contacts.tail_vectors;
   state_.contacts.history_vectors = loop_->history_vectors();
   const auto [skin, contact_skin] = default_skins(state_);
   rebuild_neighbours(state_, skin, contact_skin);

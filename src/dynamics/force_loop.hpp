@@ -38,6 +38,7 @@ struct ForceOptions {
   Arms arms = Arms::middle;
   double normal_ratio = 0, shear_ratio = 0;  ///< contact dashpots, ξ
   bool tally = false;                        ///< virial and works wanted
+  bool viscous_history = false;              ///< dashpot work wanted: three values behind the law's history keep their force
   bool scalar = false;                       ///< the reference path: one contact at a time
 };
 

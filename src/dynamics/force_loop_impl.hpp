@@ -29,7 +29,7 @@ class ForceLoopOf final : public ForceLoop {
   Tally contacts(State& state, ForceWorkspace& work, double dt, const ForceOptions& options) const override {
     const std::size_t chunks = work.schedule.chunks();
     for (std::size_t c = 0; c < Cell::images; ++c) work.shift[c].set(state.cell.shift(static_cast<std::uint8_t>(c)));
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (chunks > 1)
     for (std::size_t k = 0; k < chunks; ++k)
       work.tally[k] = options.scalar ? chunk<double>(state, work, k, dt, options) : chunk<Batch>(state, work, k, dt, options);
     Tally total;
@@ -115,7 +115,11 @@ class ForceLoopOf final : public ForceLoop {
         add_quads<S>(rows, ci + c, 2, 1, {mi.x, mi.y, mi.z, zero});
         add_quads<S>(rows, target + c, 2, 1, {mj.x, mj.y, mj.z, zero});
       }
-      if (options.tally) add(sums, branch, inc, f, touching);
+      if (options.tally) {
+        add(sums, branch, inc, f, touching);
+        if (options.viscous_history)
+          sums.viscous = sums.viscous + viscous_work(stored + history.size() * Contacts::lanes, Contacts::lanes, g, inc, f);
+      }
     }
     return finish(sums);
   }
@@ -124,7 +128,6 @@ class ForceLoopOf final : public ForceLoop {
   EG_INLINE static void add(Sums<S>& sums, const Vec<S>& branch, const Increment<S>& inc, const ContactForce<S>& f, M touching) {
     sums.virial += outer(f.on_j, branch);
     sums.stiffness = sums.stiffness + select(touching, f.law.normal.stiffness * dot(branch, branch), S(0.0));
-    sums.viscous = sums.viscous + f.viscous_work;
     sums.force = sums.force + norm(f.on_j);
     sums.touching = sums.touching + select(touching, S(1.0), S(0.0));
     if constexpr (Law::history_vectors > 0) {
@@ -134,6 +137,15 @@ class ForceLoopOf final : public ForceLoop {
       const S kt = f.law.normal.tangential;
       sums.friction = sums.friction + select(touching & (kt > S(0.0)), slid / max(kt, S(1e-300)), S(0.0));
     }
+  }
+
+  /// Work on the dashpots by the trapezoidal rule; their last force is kept at `stored` (three values, `stride` apart).
+  template <class S>
+  EG_INLINE static S viscous_work(double* stored, std::size_t stride, const Geometry<S>& g, const Increment<S>& inc, const ContactForce<S>& f) {
+    Vec<S> mean{load_values<S>(stored), load_values<S>(stored + stride), load_values<S>(stored + 2 * stride)};
+    store_values(stored, f.dashpot.x), store_values(stored + stride, f.dashpot.y), store_values(stored + 2 * stride, f.dashpot.z);
+    mean = (mean + f.dashpot) * S(0.5);
+    return dot(mean, g.n) * inc.approach - dot(mean, inc.slip);
   }
 
   template <class S>
@@ -185,8 +197,8 @@ Tally ForceLoopOf<Law, rotation>::walls(State& state, ForceWorkspace& work, doub
     if (!options.tally) continue;
     Sums<double> sums;
     add(sums, Vec3{}, inc, f, g.overlap > 0);
-    Tally one = finish(sums);
-    tally += one;
+    if (options.viscous_history) sums.viscous = viscous_work<double>(c.history.data() + history.size(), 1, g, inc, f);
+    tally += finish(sums);
   }
   return tally;
 }

@@ -31,7 +31,7 @@ double drift(State& state, double dt) {
   state.cell.origin += (l * state.cell.origin) * dt;
   const Mat3 f = state.cell.h * inverse(state.list.reference_cell);
   std::vector<double> largest(chunks_of(g.size()), 0.0);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (largest.size() > 1)
   for (std::size_t k = 0; k < largest.size(); ++k) {
     double most = 0;
     for (std::size_t i = k * chunk; i < std::min(g.size(), (k + 1) * chunk); ++i) {
@@ -54,7 +54,7 @@ KickSums kick(State& state, const ForceWorkspace& work, double dt, const KickOpt
   auto& g = state.grains;
   const Mat3 l = state.cell.rate;
   std::vector<KickSums> sums(chunks_of(g.size()));
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (sums.size() > 1)
   for (std::size_t k = 0; k < sums.size(); ++k) {
     KickSums s;
     for (std::size_t i = k * chunk; i < std::min(g.size(), (k + 1) * chunk); ++i) {

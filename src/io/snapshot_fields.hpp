@@ -42,12 +42,13 @@ void visit_grains(Archive& a, G& grains) {
 
 template <class Archive, class C>
 void visit_contacts(Archive& a, C& contacts) {
-  [[maybe_unused]] auto& [i, j, image, history, chunk_begin, history_size, history_vectors] = contacts;
+  [[maybe_unused]] auto& [i, j, image, history, chunk_begin, history_size, history_vectors, tail_vectors] = contacts;
   a.array("contacts/i", "-", i);
   a.array("contacts/j", "-", j);
   a.array("contacts/image", "-", image);
   a.array("contacts/chunk_begin", "-", chunk_begin);
   a.value("contacts/history_vectors", "-", history_vectors);
+  a.value("contacts/tail_vectors", "-", tail_vectors);
   a.history("contacts/history", "N", contacts);  // a row a contact, whatever the blocks in memory; sets history_size
 }
 
@@ -69,7 +70,7 @@ void visit_list(Archive& a, L& list) {
 
 template <class Archive, class W>
 void visit_walls(Archive& a, W& walls) {
-  [[maybe_unused]] const auto [point, normal, velocity, material, force, moved, work] = Wall{};  // all its fields
+  [[maybe_unused]] const auto [point, normal, velocity, material, force, moved] = Wall{};  // all its fields
   a.column(
       "walls/point", "m", walls, [](auto& w) -> auto& { return w.point; });
   a.column(
@@ -81,7 +82,7 @@ void visit_walls(Archive& a, W& walls) {
   a.column(
       "walls/force", "N", walls, [](auto& w) -> auto& { return w.force; });
   a.column(
-      "walls/work", "J", walls, [](auto& w) -> auto& { return w.work; });
+      "walls/moved", "m", walls, [](auto& w) -> auto& { return w.moved; });
 }
 
 template <class Archive, class W>

@@ -20,14 +20,14 @@ struct Frame {
   std::array<double, 3> width;
 };
 
-Frame make_frame(const Grains& grains, const Cell& cell) {
+Frame make_frame(const Grains& grains, const Cell& cell, double least_extent) {
   Mat3 h = cell.h;
   Vec3 origin = cell.origin;
   for (int k = 0; k < 3; ++k) {
     if (cell.periodic[static_cast<std::size_t>(k)]) continue;
     double low = INFINITY, high = -INFINITY;
     for (const auto& p : grains.position) low = std::min(low, p.vec()[k]), high = std::max(high, p.vec()[k]);
-    const double extent = std::max(high - low, 1e-300) * (1 + 1e-9) + 1e-300;
+    const double extent = std::max(high - low, least_extent) * (1 + 1e-9);
     for (int r = 0; r < 3; ++r) h(r, k) = 0;
     h(k, k) = extent;
     origin[k] = low;
@@ -109,7 +109,7 @@ std::vector<NearPair> find_pairs(const Grains& grains, const Cell& cell, double 
     if (!std::isfinite(p.x + p.y + p.z)) throw RunError("a grain's position is not finite: the step was unstable; use a smaller one");
     smallest = std::min(smallest, p.w), largest = std::max(largest, p.w);
   }
-  const Frame frame = make_frame(grains, cell);
+  const Frame frame = make_frame(grains, cell, 2 * largest);
   for (std::size_t k = 0; k < 3; ++k)
     if (frame.periodic[k] && frame.width[k] < 2 * largest + skin)
       throw RunError(fmt::format("the periodic cell is {:.6g} m wide along {}, less than the largest diameter plus the list's skin, "
@@ -131,7 +131,7 @@ std::vector<NearPair> find_pairs(const Grains& grains, const Cell& cell, double 
   constexpr std::size_t chunk = 4096;
   const std::size_t chunks = (grains.size() + chunk - 1) / chunk;
   std::vector<std::vector<NearPair>> found(chunks);
-#pragma omp parallel for schedule(dynamic)
+#pragma omp parallel for schedule(dynamic) if (chunks > 1)
   for (std::size_t k = 0; k < chunks; ++k)
     for (std::size_t i = k * chunk; i < std::min(grains.size(), (k + 1) * chunk); ++i) {
       const Quad& a = grains.position[i];

@@ -37,6 +37,7 @@ struct Contacts {
   std::vector<std::uint64_t> chunk_begin;///< contacts of chunk k: [chunk_begin[k], chunk_begin[k+1]), multiples of `lanes`
   std::size_t history_size = 0;          ///< values a contact, fixed by the law
   std::size_t history_vectors = 0;       ///< how many 3-vectors lead them
+  std::size_t tail_vectors = 0;          ///< how many 3-vectors end them (dashpot force [N], only with an energy ledger)
 
   std::size_t size() const { return i.size(); }
   std::uint8_t image_of(std::size_t c) const { return image.empty() ? Cell::home : image[c]; }
@@ -54,7 +55,6 @@ struct Wall {
   std::uint16_t material = 0;
   Vec3 force;                            ///< force of the grains on the wall in the last step [N]
   double moved = 0;                      ///< path along the normal since contacts were last refreshed [m]
-  double work = 0;                       ///< work done by the wall on the grains so far [J]
 };
 
 struct WallContact {
