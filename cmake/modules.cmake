@@ -30,7 +30,7 @@ function(eigengrain_tests label)
     target_include_directories(${stem} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
     target_link_libraries(${stem} PRIVATE ${ARGN} GTest::gtest GTest::gtest_main)
     target_compile_definitions(${stem} PRIVATE EIGENGRAIN_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-    gtest_discover_tests(${stem} PROPERTIES LABELS ${case_label} DISCOVERY_TIMEOUT 60)
+    gtest_discover_tests(${stem} NO_PRETTY_VALUES PROPERTIES LABELS ${case_label} DISCOVERY_TIMEOUT 60)
   endforeach()
 endfunction()
 
