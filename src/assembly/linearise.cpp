@@ -16,7 +16,8 @@ Vec<D12> variable(const Vec3& v, std::size_t first) {
 Vec<D12> constant(const Vec3& v) { return {D12(v.x), D12(v.y), D12(v.z)}; }
 
 template <class Law>
-TangentBlock tangent(const ContactPoint& p, const State& state, const typename Law::template Constants<double>& constants, Arms arms) {
+TangentBlock tangent(const ContactPoint& p, const State& state,
+                     const typename Law::template Constants<double>& constants, Arms arms) {
   const auto& grains = state.grains;
   const bool wall = p.j == no_index;
   const Vec<D12> ui = variable({}, 0), ti = variable({}, 3);
@@ -25,7 +26,8 @@ TangentBlock tangent(const ContactPoint& p, const State& state, const typename L
   Geometry<D12> g;
   if (wall) {
     const Wall& w = state.walls[p.wall];
-    g = grain_plane<D12>(dot(constant(grains.position[p.i].vec() - w.point) + ui, constant(w.normal)), constant(w.normal), ri, arms);
+    g = grain_plane<D12>(dot(constant(grains.position[p.i].vec() - w.point) + ui, constant(w.normal)),
+                         constant(w.normal), ri, arms);
   } else {
     g = grain_grain<D12>(constant(p.branch) + uj - ui, ri, rj, arms);
   }
@@ -59,9 +61,13 @@ Network linearise(const Scene& scene, const State& state, const OverlapGrowth& g
     if (net.rotation) net.inverse_inertia.push_back(g.spin[i].w);
   }
   net.id = g.id;
-  visit_contacts(scene, state, [&](const ContactPoint& p) {
-    net.springs.push_back({p.i, p.j, p.geometry.arm_i, p.geometry.arm_j, p.normal.stiffness, p.normal.tangential, p.geometry.n});
-  }, growth);
+  visit_contacts(
+      scene, state,
+      [&](const ContactPoint& p) {
+        net.springs.push_back(
+            {p.i, p.j, p.geometry.arm_i, p.geometry.arm_j, p.normal.stiffness, p.normal.tangential, p.geometry.n});
+      },
+      growth);
   return net;
 }
 
@@ -80,8 +86,10 @@ std::vector<TangentBlock> consistent_blocks(const Scene& scene, const State& sta
     visit_contacts(scene, state, [&](const ContactPoint& p) {
       const auto mi = state.grains.material_of(p.i);
       const auto mj = p.j == no_index ? state.walls[p.wall].material : state.grains.material_of(p.j);
-      if (state.contacts.history_vectors == 0) blocks.push_back(tangent<Frictionless<Law>>(p, state, table[mi * kinds + mj], arms));
-      else blocks.push_back(tangent<Law>(p, state, table[mi * kinds + mj], arms));
+      if (state.contacts.history_vectors == 0)
+        blocks.push_back(tangent<Frictionless<Law>>(p, state, table[mi * kinds + mj], arms));
+      else
+        blocks.push_back(tangent<Law>(p, state, table[mi * kinds + mj], arms));
     });
   });
   return blocks;
@@ -102,7 +110,8 @@ Eigen::SparseMatrix<double> assemble_blocks(const std::vector<TangentBlock>& blo
           for (int q = 0; q < n; ++q) {
             const auto row = 6 * r + static_cast<std::size_t>(dofs[static_cast<std::size_t>(p)]);
             const auto column = 6 * c + static_cast<std::size_t>(dofs[static_cast<std::size_t>(q)]);
-            entries.emplace_back(static_cast<int>(side[r]) * n + p, static_cast<int>(side[c]) * n + q, b.k[12 * row + column]);
+            entries.emplace_back(static_cast<int>(side[r]) * n + p, static_cast<int>(side[c]) * n + q,
+                                 b.k[12 * row + column]);
           }
       }
   }

@@ -8,8 +8,8 @@
 
 namespace eg {
 
-/// Elastic mode: every touching contact sticks; kn, kt of the present overlap (with `growth`: of the larger overlap, and
-/// pairs that would touch count too). Throws nothing; a state without contacts gives no springs.
+/// Elastic mode: every touching contact sticks; kn, kt of the present overlap (with `growth`: of the larger overlap,
+/// and pairs that would touch count too). Throws nothing; a state without contacts gives no springs.
 Network linearise(const Scene& scene, const State& state, const OverlapGrowth& growth = {});
 
 /// Exact derivative of one contact's forces, K_c = −∂(F_i, M_i, F_j, M_j)/∂(u_i, θ_i, u_j, θ_j): 12×12, row major.
@@ -19,8 +19,8 @@ struct TangentBlock {
   std::array<double, 144> k{};
 };
 
-/// Consistent mode: the blocks of all touching contacts, by automatic differentiation of the same function that the force
-/// loop runs. Nonsymmetric where contacts slide.
+/// Consistent mode: the blocks of all touching contacts, by automatic differentiation of the same function that the
+/// force loop runs. Nonsymmetric where contacts slide.
 std::vector<TangentBlock> consistent_blocks(const Scene& scene, const State& state);
 
 /// The blocks added up: dofs_per_grain() rows a grain in the order of Network (2D: ux uy θz).

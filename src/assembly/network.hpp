@@ -10,20 +10,20 @@
 namespace eg {
 
 struct Spring {
-  Index i = 0, j = 0;               ///< grains; j == no_index: a fixed wall. i == j is possible (image of itself)
-  double arm_i = 0, arm_j = 0;      ///< a [m]; arm_j = 0 for a wall
-  double normal = 0, tangential = 0;///< kn, kt [N/m]
-  Vec3 n;                           ///< unit, from i to j
+  Index i = 0, j = 0;                 ///< grains; j == no_index: a fixed wall. i == j is possible (image of itself)
+  double arm_i = 0, arm_j = 0;        ///< a [m]; arm_j = 0 for a wall
+  double normal = 0, tangential = 0;  ///< kn, kt [N/m]
+  Vec3 n;                             ///< unit, from i to j
 };
 
 /// Masses enter as inverses: 0 is a grain that cannot move (or turn). Order of grains as in State::grains.
 struct Network {
-  int dimension = 3;                ///< degrees of freedom a grain: 3D ux uy uz θx θy θz; 2D ux uy θz
-  bool rotation = true;             ///< false: translations only (3 or 2)
-  std::vector<double> inverse_mass; ///< [1/kg]
+  int dimension = 3;                    ///< degrees of freedom a grain: 3D ux uy uz θx θy θz; 2D ux uy θz
+  bool rotation = true;                 ///< false: translations only (3 or 2)
+  std::vector<double> inverse_mass;     ///< [1/kg]
   std::vector<double> inverse_inertia;  ///< [1/(kg m²)]; empty when !rotation
-  std::vector<double> radius;       ///< [m]
-  std::vector<Index> id;            ///< the user's numbers
+  std::vector<double> radius;           ///< [m]
+  std::vector<Index> id;                ///< the user's numbers
   std::vector<Spring> springs;
 
   std::size_t size() const { return inverse_mass.size(); }

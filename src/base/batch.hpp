@@ -1,7 +1,7 @@
 #pragma once
-// Eight doubles at a time, on the vector extensions of g++ and clang: one 512-bit register where the processor has them,
-// else several narrower ones, with the same results. Branches become masks. (std::experimental::simd of libstdc++ 12
-// drops masked assignments under clang 14, so it is not used.)
+// Eight doubles at a time, on the vector extensions of g++ and clang: one 512-bit register where the processor has
+// them, else several narrower ones, with the same results. Branches become masks. (std::experimental::simd of libstdc++
+// 12 drops masked assignments under clang 14, so it is not used.)
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -89,11 +89,17 @@ EG_INLINE Batch sqrt(Batch a) {
 EG_INLINE double sum(Batch a) {
   return ((a.v[0] + a.v[1]) + (a.v[2] + a.v[3])) + ((a.v[4] + a.v[5]) + (a.v[6] + a.v[7]));
 }
-EG_INLINE Batch load_lanes(const double* p) { Batch b; __builtin_memcpy(&b.v, p, 64); return b; }
+EG_INLINE Batch load_lanes(const double* p) {
+  Batch b;
+  __builtin_memcpy(&b.v, p, 64);
+  return b;
+}
 EG_INLINE void store_lanes(double* p, Batch b) { __builtin_memcpy(p, &b.v, 64); }
 
 /// Rows of eight grains as columns: out[c] holds component c of lanes 0…7.
-struct QuadColumns { Batch x, y, z, w; };
+struct QuadColumns {
+  Batch x, y, z, w;
+};
 
 EG_INLINE Double8 join(Double4 a, Double4 b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7); }
 
@@ -102,24 +108,26 @@ EG_INLINE QuadColumns transpose_rows(Double4 r0, Double4 r1, Double4 r2, Double4
                                      Double4 r7) {
   // Each 128-bit part of t holds two components of one lane; order of lanes restored by the second shuffle.
   const Double8 t0 = join(r0, r4), t1 = join(r1, r5), t2 = join(r2, r6), t3 = join(r3, r7);
-  const Double8 a = __builtin_shufflevector(t0, t1, 0, 8, 2, 10, 4, 12, 6, 14);    // x0 x1 z0 z1 | x4 x5 z4 z5
-  const Double8 b = __builtin_shufflevector(t0, t1, 1, 9, 3, 11, 5, 13, 7, 15);    // y0 y1 w0 w1 | …
-  const Double8 c = __builtin_shufflevector(t2, t3, 0, 8, 2, 10, 4, 12, 6, 14);    // x2 x3 z2 z3 | …
+  const Double8 a = __builtin_shufflevector(t0, t1, 0, 8, 2, 10, 4, 12, 6, 14);  // x0 x1 z0 z1 | x4 x5 z4 z5
+  const Double8 b = __builtin_shufflevector(t0, t1, 1, 9, 3, 11, 5, 13, 7, 15);  // y0 y1 w0 w1 | …
+  const Double8 c = __builtin_shufflevector(t2, t3, 0, 8, 2, 10, 4, 12, 6, 14);  // x2 x3 z2 z3 | …
   const Double8 d = __builtin_shufflevector(t2, t3, 1, 9, 3, 11, 5, 13, 7, 15);
-  return {__builtin_shufflevector(a, c, 0, 1, 8, 9, 4, 5, 12, 13), __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13),
-          __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15), __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15)};
+  return {__builtin_shufflevector(a, c, 0, 1, 8, 9, 4, 5, 12, 13),
+          __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13),
+          __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15),
+          __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15)};
 }
 
 /// The inverse: columns back into eight rows.
 EG_INLINE void transpose_columns(const QuadColumns& q, Double4 (&r)[8]) {
-  const Double8 a = __builtin_shufflevector(q.x.v, q.y.v, 0, 8, 2, 10, 4, 12, 6, 14);   // x0 y0 x2 y2 | x4 y4 x6 y6
-  const Double8 b = __builtin_shufflevector(q.x.v, q.y.v, 1, 9, 3, 11, 5, 13, 7, 15);   // x1 y1 x3 y3 | …
-  const Double8 c = __builtin_shufflevector(q.z.v, q.w.v, 0, 8, 2, 10, 4, 12, 6, 14);   // z0 w0 z2 w2 | …
+  const Double8 a = __builtin_shufflevector(q.x.v, q.y.v, 0, 8, 2, 10, 4, 12, 6, 14);  // x0 y0 x2 y2 | x4 y4 x6 y6
+  const Double8 b = __builtin_shufflevector(q.x.v, q.y.v, 1, 9, 3, 11, 5, 13, 7, 15);  // x1 y1 x3 y3 | …
+  const Double8 c = __builtin_shufflevector(q.z.v, q.w.v, 0, 8, 2, 10, 4, 12, 6, 14);  // z0 w0 z2 w2 | …
   const Double8 d = __builtin_shufflevector(q.z.v, q.w.v, 1, 9, 3, 11, 5, 13, 7, 15);
-  const Double8 p0 = __builtin_shufflevector(a, c, 0, 1, 8, 9, 4, 5, 12, 13);           // row 0 | row 4
-  const Double8 p1 = __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13);           // row 1 | row 5
-  const Double8 p2 = __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15);         // row 2 | row 6
-  const Double8 p3 = __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15);         // row 3 | row 7
+  const Double8 p0 = __builtin_shufflevector(a, c, 0, 1, 8, 9, 4, 5, 12, 13);    // row 0 | row 4
+  const Double8 p1 = __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13);    // row 1 | row 5
+  const Double8 p2 = __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15);  // row 2 | row 6
+  const Double8 p3 = __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15);  // row 3 | row 7
   r[0] = __builtin_shufflevector(p0, p0, 0, 1, 2, 3), r[4] = __builtin_shufflevector(p0, p0, 4, 5, 6, 7);
   r[1] = __builtin_shufflevector(p1, p1, 0, 1, 2, 3), r[5] = __builtin_shufflevector(p1, p1, 4, 5, 6, 7);
   r[2] = __builtin_shufflevector(p2, p2, 0, 1, 2, 3), r[6] = __builtin_shufflevector(p2, p2, 4, 5, 6, 7);

@@ -1,6 +1,6 @@
 #pragma once
-// A value with its first derivatives along N directions (forward automatic differentiation). Plain values, no expression
-// types, so that select() and the laws take it like a double.
+// A value with its first derivatives along N directions (forward automatic differentiation). Plain values, no
+// expression types, so that select() and the laws take it like a double.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -14,10 +14,22 @@ struct Dual {
 
   Dual() = default;
   Dual(double value) : v(value) {}
-  static Dual variable(double value, std::size_t k) { Dual x(value); x.d[k] = 1; return x; }
+  static Dual variable(double value, std::size_t k) {
+    Dual x(value);
+    x.d[k] = 1;
+    return x;
+  }
 
-  friend Dual operator+(Dual a, const Dual& b) { a.v += b.v; for (std::size_t k = 0; k < N; ++k) a.d[k] += b.d[k]; return a; }
-  friend Dual operator-(Dual a, const Dual& b) { a.v -= b.v; for (std::size_t k = 0; k < N; ++k) a.d[k] -= b.d[k]; return a; }
+  friend Dual operator+(Dual a, const Dual& b) {
+    a.v += b.v;
+    for (std::size_t k = 0; k < N; ++k) a.d[k] += b.d[k];
+    return a;
+  }
+  friend Dual operator-(Dual a, const Dual& b) {
+    a.v -= b.v;
+    for (std::size_t k = 0; k < N; ++k) a.d[k] -= b.d[k];
+    return a;
+  }
   friend Dual operator-(Dual a) { return Dual(0.0) - a; }
   friend Dual operator*(const Dual& a, const Dual& b) {
     Dual c(a.v * b.v);

@@ -1,5 +1,6 @@
 #pragma once
-// What a contact law may ask of its number type S, be it double, Batch or Dual: + − * /, sqrt, <, >, select, max, min, any.
+// What a contact law may ask of its number type S, be it double, Batch or Dual: + − * /, sqrt, <, >, select, max, min,
+// any.
 #include <cmath>
 
 #include "base/batch.hpp"
@@ -7,16 +8,30 @@
 
 namespace eg {
 
-template <class S> EG_INLINE S select(bool choose, const S& yes, const S& no) { return choose ? yes : no; }
+template <class S>
+EG_INLINE S select(bool choose, const S& yes, const S& no) {
+  return choose ? yes : no;
+}
 inline bool any(bool b) { return b; }
-template <class S> EG_INLINE S max(const S& a, const S& b) { return select(a < b, b, a); }
-template <class S> EG_INLINE S min(const S& a, const S& b) { return select(b < a, b, a); }
+template <class S>
+EG_INLINE S max(const S& a, const S& b) {
+  return select(a < b, b, a);
+}
+template <class S>
+EG_INLINE S min(const S& a, const S& b) {
+  return select(b < a, b, a);
+}
 using std::sqrt;
 
-template <class S> inline constexpr std::size_t lanes_of = 1;
-template <> inline constexpr std::size_t lanes_of<Batch> = Batch::lanes;
+template <class S>
+inline constexpr std::size_t lanes_of = 1;
+template <>
+inline constexpr std::size_t lanes_of<Batch> = Batch::lanes;
 
-template <class S> EG_INLINE Vec<S> select(bool m, const Vec<S>& yes, const Vec<S>& no) { return m ? yes : no; }
+template <class S>
+EG_INLINE Vec<S> select(bool m, const Vec<S>& yes, const Vec<S>& no) {
+  return m ? yes : no;
+}
 EG_INLINE Vec<Batch> select(Mask m, const Vec<Batch>& yes, const Vec<Batch>& no) {
   return {select(m, yes.x, no.x), select(m, yes.y, no.y), select(m, yes.z, no.z)};
 }

@@ -6,7 +6,9 @@
 namespace eg {
 namespace {
 
-struct Place { int row, column; };
+struct Place {
+  int row, column;
+};
 constexpr std::array<Place, 6> places{{{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}}};
 
 double sign_of(std::size_t k) { return k < 3 ? -1.0 : 1.0; }  // L is a stretching; x, y, z count compression positive
@@ -20,7 +22,8 @@ Servo servo_of(const State& state, double dt) {
   double mass = 0;
   for (const auto& v : state.grains.velocity) mass += v.w > 0 ? 1 / v.w : 0;
   const double m = state.stiffness_sum / ((state.dimension == 3 ? 9 : 4) * volume);
-  const double width = std::min({state.cell.h(0, 0), state.cell.h(1, 1), state.dimension == 3 ? state.cell.h(2, 2) : INFINITY});
+  const double width =
+      std::min({state.cell.h(0, 0), state.cell.h(1, 1), state.dimension == 3 ? state.cell.h(2, 2) : INFINITY});
   return {m, m > 0 ? std::max(width * std::sqrt(mass / volume / m), 20 * dt) : 1.0};
 }
 
@@ -76,7 +79,8 @@ void control_cell(State& state, const StageSpec& stage, double dt) {
   state.cell.rate = Mat3{};
   for (std::size_t k = 0; k < 6; ++k) {
     const auto [r, c] = places[k];
-    const bool moves = state.cell.periodic[static_cast<std::size_t>(r)] && state.cell.periodic[static_cast<std::size_t>(c)];
+    const bool moves =
+        state.cell.periodic[static_cast<std::size_t>(r)] && state.cell.periodic[static_cast<std::size_t>(c)];
     if (moves) state.cell.rate(r, c) = sign_of(k) * rate[k];
   }
 }

@@ -7,15 +7,22 @@ namespace eg {
 enum class Unloading { keep, rescale };
 
 /// a = √(R*δ), N = (4/3) E* a δ, kn = 2 E* a, kt = 8 G* a; T += kt Δs, |T| ≤ µN (Mindlin 1949; Thornton et al. 2013).
-/// Unloading::keep leaves T as it is when N drops (PFC default, geomechanics LAMMPS); Unloading::rescale shortens T with
-/// the contact radius, T ← T a/a_old (LAMMPS mindlin_rescale, PFC hz_mode 1); a_old is the one history scalar then.
+/// Unloading::keep leaves T as it is when N drops (PFC default, geomechanics LAMMPS); Unloading::rescale shortens T
+/// with the contact radius, T ← T a/a_old (LAMMPS mindlin_rescale, PFC hz_mode 1); a_old is the one history scalar
+/// then.
 template <Unloading unloading>
 struct HertzMindlinLaw {
   static constexpr std::string_view name = unloading == Unloading::keep ? "hertz-mindlin" : "hertz-mindlin-rescale";
   static constexpr std::size_t history_vectors = 1, history_scalars = unloading == Unloading::rescale ? 1 : 0;
 
-  template <class S> struct Constants { S e_star, g_star, friction; };
-  template <class S> struct Pair { S e_star, g_star, r_star, friction; };
+  template <class S>
+  struct Constants {
+    S e_star, g_star, friction;
+  };
+  template <class S>
+  struct Pair {
+    S e_star, g_star, r_star, friction;
+  };
 
   /// 1/E* = Σ(1−ν²)/E with E = 2G(1+ν), so (1−ν)/(2G) a side; 1/G* = Σ(2−ν)/G.
   static Constants<double> constants(const Material& a, const Material& b, int /*dimension*/) {
@@ -24,19 +31,24 @@ struct HertzMindlinLaw {
     return {1 / soft, 1 / slip, std::min(a.friction, b.friction)};
   }
 
-  template <class S> EG_INLINE static Pair<S> pair(const Constants<S>& c, const S& ri, const S& rj) {
+  template <class S>
+  EG_INLINE static Pair<S> pair(const Constants<S>& c, const S& ri, const S& rj) {
     return {c.e_star, c.g_star, ri / (S(1.0) + ri / rj), c.friction};
   }
 
-  template <class S> EG_INLINE static NormalResponse<S> normal(const Pair<S>& p, const S& overlap) {
+  template <class S>
+  EG_INLINE static NormalResponse<S> normal(const Pair<S>& p, const S& overlap) {
     const S a = sqrt(p.r_star * overlap);
     const S ea = p.e_star * a;
     return {S(4.0 / 3.0) * ea * overlap, S(2.0) * ea, S(8.0) * p.g_star * a};
   }
-  static double normal_energy(const Pair<double>& p, double overlap) { return 0.4 * normal<double>(p, overlap).force * overlap; }
+  static double normal_energy(const Pair<double>& p, double overlap) {
+    return 0.4 * normal<double>(p, overlap).force * overlap;
+  }
 
   template <class S>
-  EG_INLINE static Response<S> respond(const Pair<S>& p, const Strain<S>& strain, std::array<S, 3 + history_scalars>& h) {
+  EG_INLINE static Response<S> respond(const Pair<S>& p, const Strain<S>& strain,
+                                       std::array<S, 3 + history_scalars>& h) {
     const auto n = normal<S>(p, strain.overlap);
     Vec<S> old = history_vector(h, 0);
     if constexpr (unloading == Unloading::rescale) {

@@ -8,13 +8,13 @@ namespace eg {
 
 template <class S>
 struct Geometry {
-  Vec<S> n;            ///< unit, from i to j
-  S overlap;           ///< δ [m], > 0 when touching
-  S arm_i, arm_j;      ///< distance of the contact point from each centre [m]
+  Vec<S> n;        ///< unit, from i to j
+  S overlap;       ///< δ [m], > 0 when touching
+  S arm_i, arm_j;  ///< distance of the contact point from each centre [m]
 };
 
-/// How far along the branch the contact point lies. `middle`: the middle of the overlap, a = R − δ/2, so that the arms sum
-/// to the branch length and rigid rotation moves no contact. `surface`: a = R, as the gran/* styles of LAMMPS.
+/// How far along the branch the contact point lies. `middle`: the middle of the overlap, a = R − δ/2, so that the arms
+/// sum to the branch length and rigid rotation moves no contact. `surface`: a = R, as the gran/* styles of LAMMPS.
 enum class Arms { middle, surface };
 
 /// `branch`: x_j − x_i [m]. Two grains at one point have n = 0, so no force direction; the caller's checks catch that.
@@ -38,15 +38,15 @@ EG_INLINE Geometry<S> grain_plane(const S& height, const Vec<S>& inward, const S
 /// Motion of both sides during the last increment.
 template <class S>
 struct Motion {
-  Vec<S> translation;          ///< u_j − u_i [m], with the affine part of a deforming cell
+  Vec<S> translation;             ///< u_j − u_i [m], with the affine part of a deforming cell
   Vec<S> rotation_i, rotation_j;  ///< θ [rad]
 };
 
 template <class S>
 struct Increment {
-  S approach;                  ///< increase of overlap by the motion [m]
-  Vec<S> slip;                 ///< tangential [m]
-  S twist;                     ///< mean rotation of both sides about n [rad]
+  S approach;   ///< increase of overlap by the motion [m]
+  Vec<S> slip;  ///< tangential [m]
+  S twist;      ///< mean rotation of both sides about n [rad]
 };
 
 /// Δ = u_j − u_i − (a_i θ_i + a_j θ_j) × n, split along and across n.
@@ -82,17 +82,18 @@ struct Dashpot {
 
 template <class S>
 struct ContactForce {
-  Vec<S> on_j;                 ///< f [N]
-  Vec<S> moment;               ///< n × T [N]; times the arm: moment on each grain
-  Response<S> law;             ///< the law's own part, without dashpots
-  Vec<S> shear_before;         ///< T of the last step, turned into the new plane [N]
-  Vec<S> dashpot;              ///< the dashpots' part of on_j [N]
+  Vec<S> on_j;          ///< f [N]
+  Vec<S> moment;        ///< n × T [N]; times the arm: moment on each grain
+  Response<S> law;      ///< the law's own part, without dashpots
+  Vec<S> shear_before;  ///< T of the last step, turned into the new plane [N]
+  Vec<S> dashpot;       ///< the dashpots' part of on_j [N]
 };
 
 /// Force of one contact. `touching` masks lanes that overlap; history of the others is cleared.
 template <class Law, bool damped, class S, class M>
-EG_INLINE ContactForce<S> interact(const typename Law::template Pair<S>& pair, const Geometry<S>& g, const Increment<S>& inc,
-                                   M touching, History<Law, S>& history, const Dashpot<S>& dashpot) {
+EG_INLINE ContactForce<S> interact(const typename Law::template Pair<S>& pair, const Geometry<S>& g,
+                                   const Increment<S>& inc, M touching, History<Law, S>& history,
+                                   const Dashpot<S>& dashpot) {
   Strain<S> strain{select(touching, g.overlap, S(0.0)), inc.slip};
   for (std::size_t k = 0; k < Law::history_vectors; ++k)
     set_history_vector(history, k, turn(history_vector(history, k), g.n, inc.twist));
@@ -109,7 +110,8 @@ EG_INLINE ContactForce<S> interact(const typename Law::template Pair<S>& pair, c
   if constexpr (damped) {
     const S cn = S(2.0) * dashpot.normal_ratio * sqrt(dashpot.mass * out.law.normal.stiffness) * dashpot.per_dt;
     out.dashpot = g.n * select(touching, cn * inc.approach, S(0.0));
-    if constexpr (Law::history_vectors > 0) {  // a sliding contact has no shear dashpot, or it would exceed Coulomb's limit
+    if constexpr (Law::history_vectors >
+                  0) {  // a sliding contact has no shear dashpot, or it would exceed Coulomb's limit
       const Vec<S> lost = out.law.unslipped - out.law.shear;
       const S cs = S(2.0) * dashpot.shear_ratio * sqrt(dashpot.mass * out.law.normal.tangential) * dashpot.per_dt;
       const S stick = select(dot(lost, lost) > S(0.0), S(0.0), cs);

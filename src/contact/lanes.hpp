@@ -6,7 +6,10 @@
 
 namespace eg {
 
-template <class S> struct Columns { S x, y, z, w; };
+template <class S>
+struct Columns {
+  S x, y, z, w;
+};
 
 EG_INLINE Double4 quad_vector(const Quad& q) { return *reinterpret_cast<const Double4*>(&q); }
 
@@ -45,20 +48,28 @@ EG_INLINE void add_quads(Quad* rows, const Index* index, std::size_t stride, std
   }
 }
 
-template <class S> EG_INLINE Vec<S> xyz(const Columns<S>& c) { return {c.x, c.y, c.z}; }
+template <class S>
+EG_INLINE Vec<S> xyz(const Columns<S>& c) {
+  return {c.x, c.y, c.z};
+}
 
 template <class S>
 EG_INLINE S load_values(const double* p) {
-  if constexpr (lanes_of<S> == 1) return *p;
-  else return load_lanes(p);
+  if constexpr (lanes_of<S> == 1)
+    return *p;
+  else
+    return load_lanes(p);
 }
 template <class S>
 EG_INLINE void store_values(double* p, const S& v) {
-  if constexpr (lanes_of<S> == 1) *p = v;
-  else store_lanes(p, v);
+  if constexpr (lanes_of<S> == 1)
+    *p = v;
+  else
+    store_lanes(p, v);
 }
 
-/// A struct of doubles (a law's Constants) as the same struct of S: all lanes alike, or lane k taken from table[pick(k)].
+/// A struct of doubles (a law's Constants) as the same struct of S: all lanes alike, or lane k taken from
+/// table[pick(k)].
 template <class To, class From, class S, class Pick>
 EG_INLINE To gather_struct(const From* table, bool uniform, Pick&& pick) {
   constexpr std::size_t n = sizeof(From) / sizeof(double);

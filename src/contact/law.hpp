@@ -12,23 +12,24 @@ namespace eg {
 /// Motion of a contact during the last increment, as a law sees it.
 template <class S>
 struct Strain {
-  S overlap;      ///< δ [m], > 0 when touching
-  Vec<S> slip;    ///< Δs [m], increment of the tangential displacement of j against i
+  S overlap;    ///< δ [m], > 0 when touching
+  Vec<S> slip;  ///< Δs [m], increment of the tangential displacement of j against i
 };
 
 /// Response normal to the contact plane.
 template <class S>
 struct NormalResponse {
-  S force;        ///< N [N], ≥ 0, repulsive
-  S stiffness;    ///< kn = dN/dδ [N/m]
-  S tangential;   ///< kt [N/m] of a sticking contact
+  S force;       ///< N [N], ≥ 0, repulsive
+  S stiffness;   ///< kn = dN/dδ [N/m]
+  S tangential;  ///< kt [N/m] of a sticking contact
 };
 
 template <class S>
 struct Response {
   NormalResponse<S> normal;
-  Vec<S> shear;      ///< T [N], acts on i as +T and on j as −T; lies in the contact plane
-  Vec<S> unslipped;  ///< T that elastic sticking alone would have given [N]; differs from `shear` when the contact slides
+  Vec<S> shear;  ///< T [N], acts on i as +T and on j as −T; lies in the contact plane
+  Vec<S>
+      unslipped;  ///< T that elastic sticking alone would have given [N]; differs from `shear` when the contact slides
 };
 
 /// A law has
@@ -51,11 +52,15 @@ concept ContactLaw = requires(const Material& m, const typename L::template Cons
   { L::template respond<double>(p, s, h) } -> std::same_as<Response<double>>;
 };
 
-template <class L> inline constexpr std::size_t history_size = L::history_vectors * 3 + L::history_scalars;
-template <class L, class S> using History = std::array<S, history_size<L>>;
+template <class L>
+inline constexpr std::size_t history_size = L::history_vectors * 3 + L::history_scalars;
+template <class L, class S>
+using History = std::array<S, history_size<L>>;
 
 template <class S, std::size_t H>
-EG_INLINE Vec<S> history_vector(const std::array<S, H>& h, std::size_t k) { return {h[3 * k], h[3 * k + 1], h[3 * k + 2]}; }
+EG_INLINE Vec<S> history_vector(const std::array<S, H>& h, std::size_t k) {
+  return {h[3 * k], h[3 * k + 1], h[3 * k + 2]};
+}
 template <class S, std::size_t H>
 EG_INLINE void set_history_vector(std::array<S, H>& h, std::size_t k, const Vec<S>& v) {
   h[3 * k] = v.x, h[3 * k + 1] = v.y, h[3 * k + 2] = v.z;
@@ -75,19 +80,24 @@ template <class Law>
 struct Frictionless {
   static constexpr std::string_view name = Law::name;
   static constexpr std::size_t history_vectors = 0, history_scalars = 0;
-  template <class S> using Constants = typename Law::template Constants<S>;
-  template <class S> using Pair = typename Law::template Pair<S>;
+  template <class S>
+  using Constants = typename Law::template Constants<S>;
+  template <class S>
+  using Pair = typename Law::template Pair<S>;
   static auto constants(const Material& a, const Material& b, int dimension) { return Law::constants(a, b, dimension); }
-  template <class S> EG_INLINE static Pair<S> pair(const Constants<S>& c, const S& ri, const S& rj) {
+  template <class S>
+  EG_INLINE static Pair<S> pair(const Constants<S>& c, const S& ri, const S& rj) {
     return Law::template pair<S>(c, ri, rj);
   }
-  template <class S> EG_INLINE static NormalResponse<S> normal(const Pair<S>& p, const S& overlap) {
+  template <class S>
+  EG_INLINE static NormalResponse<S> normal(const Pair<S>& p, const S& overlap) {
     auto n = Law::template normal<S>(p, overlap);
     n.tangential = S(0.0);
     return n;
   }
   static double normal_energy(const Pair<double>& p, double overlap) { return Law::normal_energy(p, overlap); }
-  template <class S> EG_INLINE static Response<S> respond(const Pair<S>& p, const Strain<S>& s, std::array<S, 0>&) {
+  template <class S>
+  EG_INLINE static Response<S> respond(const Pair<S>& p, const Strain<S>& s, std::array<S, 0>&) {
     return {normal<S>(p, s.overlap), {S(0.0), S(0.0), S(0.0)}, {S(0.0), S(0.0), S(0.0)}};
   }
 };

@@ -12,14 +12,18 @@ struct Linear {
   static constexpr std::string_view name = "linear";
   static constexpr std::size_t history_vectors = 1, history_scalars = 0;
 
-  template <class S> struct Constants {
+  template <class S>
+  struct Constants {
     S kn;          ///< [N/m], 0 by deformability
     S volume;      ///< π E* [Pa] in 3D by deformability, else 0: kn = volume·r²/L
     S area;        ///< 2 E* [Pa] in 2D by deformability, else 0: kn = area·r/L
     S ks_over_kn;  ///< [-]
     S friction;    ///< µ [-]
   };
-  template <class S> struct Pair { S kn, ks, friction; };
+  template <class S>
+  struct Pair {
+    S kn, ks, friction;
+  };
 
   static Constants<double> constants(const Material& a, const Material& b, int dimension) {
     const double mu = std::min(a.friction, b.friction);
@@ -35,19 +39,22 @@ struct Linear {
                           : Constants<double>{0, 0, 2 * e, ratio, mu};
   }
 
-  template <class S> EG_INLINE static Pair<S> pair(const Constants<S>& c, const S& ri, const S& rj) {
+  template <class S>
+  EG_INLINE static Pair<S> pair(const Constants<S>& c, const S& ri, const S& rj) {
     const S r = min(ri, rj);
     const S length = select(rj > S(1e300), ri, ri + rj);
     const S kn = c.kn + (c.volume * r + c.area) * r / length;
     return {kn, kn * c.ks_over_kn, c.friction};
   }
 
-  template <class S> EG_INLINE static NormalResponse<S> normal(const Pair<S>& p, const S& overlap) {
+  template <class S>
+  EG_INLINE static NormalResponse<S> normal(const Pair<S>& p, const S& overlap) {
     return {p.kn * overlap, p.kn, p.ks};
   }
   static double normal_energy(const Pair<double>& p, double overlap) { return 0.5 * p.kn * overlap * overlap; }
 
-  template <class S> EG_INLINE static Response<S> respond(const Pair<S>& p, const Strain<S>& strain, std::array<S, 3>& h) {
+  template <class S>
+  EG_INLINE static Response<S> respond(const Pair<S>& p, const Strain<S>& strain, std::array<S, 3>& h) {
     const auto n = normal<S>(p, strain.overlap);
     const Vec<S> trial = history_vector(h, 0) + strain.slip * n.tangential;
     const Vec<S> shear = coulomb(trial, p.friction * n.force);

@@ -53,7 +53,8 @@ void Engine::forces(double dt, bool tally) {
   state_.stiffness_sum = tally_.stiffness_sum;
   auto& e = state_.ledger;
   e.shear_work += tally_.shear_work, e.friction += tally_.friction, e.viscous_damping += tally_.viscous;
-  for (std::size_t k = 0; k < 9; ++k) e.boundary -= 0.5 * (virial_before.a[k] + virial.a[k]) * state_.cell.rate.a[k] * dt;
+  for (std::size_t k = 0; k < 9; ++k)
+    e.boundary -= 0.5 * (virial_before.a[k] + virial.a[k]) * state_.cell.rate.a[k] * dt;
   for (const auto& w : state_.walls) wall_power -= 0.5 * dot(w.force, w.velocity);
   e.boundary += wall_power * dt;
 }

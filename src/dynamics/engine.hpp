@@ -11,7 +11,7 @@ class Engine {
   /// `scalar`: the reference force loop. Throws RunError when the cell is too narrow for its grains.
   Engine(const Scene& scene, State& state, bool scalar = false);
 
-  void set_friction(const std::vector<double>& friction);   ///< µ per material
+  void set_friction(const std::vector<double>& friction);  ///< µ per material
   void set_local_damping(double alpha) { kick_.local = alpha; }
 
   /// Drift over state.dt, lists, forces at the new time. `tally`: stress, works and force statistics wanted.
@@ -19,14 +19,18 @@ class Engine {
   /// Kick to the next half step; the next drift will take next_dt [s]. Advances state.time's velocity only.
   void kick(double next_dt);
   /// Both, with one step length.
-  void step(double dt, bool tally = true) { move(tally); kick(dt); }
+  void step(double dt, bool tally = true) {
+    move(tally);
+    kick(dt);
+  }
 
-  const Tally& tally() const { return tally_; }             ///< of the last move with tally
+  const Tally& tally() const { return tally_; }  ///< of the last move with tally
   const KickSums& kick_sums() const { return sums_; }
   const ForceWorkspace& workspace() const { return work_; }
   /// Mean net force of grains over mean contact force in the last step with tally [-]; 1 without contacts.
   double unbalanced_ratio() const;
-  /// Forces at the present positions after a motion of length dt (no drift, no list check): for tests and linearisation.
+  /// Forces at the present positions after a motion of length dt (no drift, no list check): for tests and
+  /// linearisation.
   void forces(double dt, bool tally);
 
  private:

@@ -18,7 +18,9 @@ Tally& Tally::operator+=(const Tally& b) {
 std::unique_ptr<ForceLoop> make_force_loop(std::string_view law, bool frictionless, bool rotation) {
   std::unique_ptr<ForceLoop> loop;
   with_law(law, [&]<class Law>(Law) { loop = make_force_loop_of<Law>(frictionless, rotation); });
-  if (!loop) throw InputError(fmt::format("contact.law = \"{}\" is not a law; known laws: {}", law, fmt::join(law_names(), ", ")));
+  if (!loop)
+    throw InputError(
+        fmt::format("contact.law = \"{}\" is not a law; known laws: {}", law, fmt::join(law_names(), ", ")));
   return loop;
 }
 

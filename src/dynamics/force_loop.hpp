@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "contact/interaction.hpp"
-#include "state/schedule.hpp"
 #include "state/scene.hpp"
+#include "state/schedule.hpp"
 #include "state/state.hpp"
 
 namespace eg {
@@ -18,10 +18,10 @@ struct alignas(64) ForceRow {
 
 /// What the loop adds up over all contacts when asked.
 struct Tally {
-  Mat3 virial;             ///< Σ f ⊗ branch, f on j [J]
-  double stiffness_sum = 0;///< Σ kn d² [J]
-  double force_sum = 0;    ///< Σ |f| [N]
-  double touching = 0;     ///< number of contacts that touch
+  Mat3 virial;                                       ///< Σ f ⊗ branch, f on j [J]
+  double stiffness_sum = 0;                          ///< Σ kn d² [J]
+  double force_sum = 0;                              ///< Σ |f| [N]
+  double touching = 0;                               ///< number of contacts that touch
   double shear_work = 0, friction = 0, viscous = 0;  ///< work and dissipation of the last increment [J]
   Tally& operator+=(const Tally& b);
 };
@@ -30,16 +30,16 @@ struct Tally {
 struct ForceWorkspace {
   Schedule schedule;
   std::vector<ForceRow> rows;
-  std::vector<Tally> tally;               ///< a chunk
-  std::vector<Quad> shift;                ///< translation of each image
+  std::vector<Tally> tally;  ///< a chunk
+  std::vector<Quad> shift;   ///< translation of each image
 };
 
 struct ForceOptions {
   Arms arms = Arms::middle;
   double normal_ratio = 0, shear_ratio = 0;  ///< contact dashpots, ξ
   bool tally = false;                        ///< virial and works wanted
-  bool viscous_history = false;              ///< dashpot work wanted: three values behind the law's history keep their force
-  bool scalar = false;                       ///< the reference path: one contact at a time
+  bool viscous_history = false;  ///< dashpot work wanted: three values behind the law's history keep their force
+  bool scalar = false;           ///< the reference path: one contact at a time
 };
 
 class ForceLoop {
@@ -48,9 +48,10 @@ class ForceLoop {
   virtual std::size_t history_size() const = 0;
   virtual std::size_t history_vectors() const = 0;
   /// Constants of all pairs of materials with these friction coefficients.
-  virtual void set_materials(const std::vector<Material>& materials, const std::vector<double>& friction, int dimension) = 0;
-  /// Forces of all grain–grain contacts after an increment of length dt: fills workspace.rows, updates history, state.virial.
-  /// Deterministic for any number of threads.
+  virtual void set_materials(const std::vector<Material>& materials, const std::vector<double>& friction,
+                             int dimension) = 0;
+  /// Forces of all grain–grain contacts after an increment of length dt: fills workspace.rows, updates history,
+  /// state.virial. Deterministic for any number of threads.
   virtual Tally contacts(State& state, ForceWorkspace& work, double dt, const ForceOptions& options) const = 0;
   /// Adds the wall contacts (after contacts()); sets Wall::force.
   virtual Tally walls(State& state, ForceWorkspace& work, double dt, const ForceOptions& options) const = 0;

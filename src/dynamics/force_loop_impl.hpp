@@ -15,7 +15,8 @@ class ForceLoopOf final : public ForceLoop {
   std::size_t history_size() const override { return eg::history_size<Law>; }
   std::size_t history_vectors() const override { return Law::history_vectors; }
 
-  void set_materials(const std::vector<Material>& materials, const std::vector<double>& friction, int dimension) override {
+  void set_materials(const std::vector<Material>& materials, const std::vector<double>& friction,
+                     int dimension) override {
     kinds_ = materials.size();
     constants_.clear();
     for (std::size_t a = 0; a < kinds_; ++a)
@@ -31,7 +32,8 @@ class ForceLoopOf final : public ForceLoop {
     for (std::size_t c = 0; c < Cell::images; ++c) work.shift[c].set(state.cell.shift(static_cast<std::uint8_t>(c)));
 #pragma omp parallel for schedule(static) if (chunks > 1)
     for (std::size_t k = 0; k < chunks; ++k)
-      work.tally[k] = options.scalar ? chunk<double>(state, work, k, dt, options) : chunk<Batch>(state, work, k, dt, options);
+      work.tally[k] =
+          options.scalar ? chunk<double>(state, work, k, dt, options) : chunk<Batch>(state, work, k, dt, options);
     Tally total;
     for (std::size_t k = 0; k < chunks; ++k) total += work.tally[k];
     return total;
@@ -47,15 +49,19 @@ class ForceLoopOf final : public ForceLoop {
   };
 
   template <class S>
-  EG_INLINE Tally chunk(State& state, ForceWorkspace& work, std::size_t k, double dt, const ForceOptions& options) const {
+  EG_INLINE Tally chunk(State& state, ForceWorkspace& work, std::size_t k, double dt,
+                        const ForceOptions& options) const {
     constexpr std::size_t lanes = lanes_of<S>;
     constexpr std::size_t ahead = 4 * Contacts::lanes;  // contacts between a prefetch and its use
     Contacts& list = state.contacts;
     const std::size_t low = k * Contacts::chunk, high = std::min(state.grains.size(), low + Contacts::chunk);
-    std::fill(work.rows.begin() + static_cast<std::ptrdiff_t>(low), work.rows.begin() + static_cast<std::ptrdiff_t>(high), ForceRow{});
-    std::fill(work.rows.begin() + work.schedule.halo_begin[k], work.rows.begin() + work.schedule.halo_begin[k + 1], ForceRow{});
+    std::fill(work.rows.begin() + static_cast<std::ptrdiff_t>(low),
+              work.rows.begin() + static_cast<std::ptrdiff_t>(high), ForceRow{});
+    std::fill(work.rows.begin() + work.schedule.halo_begin[k], work.rows.begin() + work.schedule.halo_begin[k + 1],
+              ForceRow{});
 
-    const Quad *position = state.grains.position.data(), *velocity = state.grains.velocity.data(), *spin = state.grains.spin.data();
+    const Quad *position = state.grains.position.data(), *velocity = state.grains.velocity.data(),
+               *spin = state.grains.spin.data();
     const Index *ci = list.i.data(), *cj = list.j.data(), *target = work.schedule.target.data();
     const std::uint8_t* image = list.image.empty() ? nullptr : list.image.data();
     auto* rows = reinterpret_cast<Quad*>(work.rows.data());
@@ -93,7 +99,8 @@ class ForceLoopOf final : public ForceLoop {
       const auto pair = Law::template pair<S>(constants, pi.w, pj.w);
 
       History<Law, S> history;
-      double* stored = list.history.data() + (c / Contacts::lanes * list.history_size) * Contacts::lanes + c % Contacts::lanes;
+      double* stored =
+          list.history.data() + (c / Contacts::lanes * list.history_size) * Contacts::lanes + c % Contacts::lanes;
       for (std::size_t h = 0; h < history.size(); ++h) history[h] = load_values<S>(stored + h * Contacts::lanes);
       ContactForce<S> f;
       if (damped) {
@@ -118,14 +125,16 @@ class ForceLoopOf final : public ForceLoop {
       if (options.tally) {
         add(sums, branch, inc, f, touching);
         if (options.viscous_history)
-          sums.viscous = sums.viscous + viscous_work(stored + history.size() * Contacts::lanes, Contacts::lanes, g, inc, f);
+          sums.viscous =
+              sums.viscous + viscous_work(stored + history.size() * Contacts::lanes, Contacts::lanes, g, inc, f);
       }
     }
     return finish(sums);
   }
 
   template <class S, class M>
-  EG_INLINE static void add(Sums<S>& sums, const Vec<S>& branch, const Increment<S>& inc, const ContactForce<S>& f, M touching) {
+  EG_INLINE static void add(Sums<S>& sums, const Vec<S>& branch, const Increment<S>& inc, const ContactForce<S>& f,
+                            M touching) {
     sums.virial += outer(f.on_j, branch);
     sums.stiffness = sums.stiffness + select(touching, f.law.normal.stiffness * dot(branch, branch), S(0.0));
     sums.force = sums.force + norm(f.on_j);
@@ -141,9 +150,11 @@ class ForceLoopOf final : public ForceLoop {
 
   /// Work on the dashpots by the trapezoidal rule; their last force is kept at `stored` (three values, `stride` apart).
   template <class S>
-  EG_INLINE static S viscous_work(double* stored, std::size_t stride, const Geometry<S>& g, const Increment<S>& inc, const ContactForce<S>& f) {
+  EG_INLINE static S viscous_work(double* stored, std::size_t stride, const Geometry<S>& g, const Increment<S>& inc,
+                                  const ContactForce<S>& f) {
     Vec<S> mean{load_values<S>(stored), load_values<S>(stored + stride), load_values<S>(stored + 2 * stride)};
-    store_values(stored, f.dashpot.x), store_values(stored + stride, f.dashpot.y), store_values(stored + 2 * stride, f.dashpot.z);
+    store_values(stored, f.dashpot.x), store_values(stored + stride, f.dashpot.y),
+        store_values(stored + 2 * stride, f.dashpot.z);
     mean = (mean + f.dashpot) * S(0.5);
     return dot(mean, g.n) * inc.approach - dot(mean, inc.slip);
   }
@@ -171,7 +182,8 @@ class ForceLoopOf final : public ForceLoop {
 };
 
 template <class Law, bool rotation>
-Tally ForceLoopOf<Law, rotation>::walls(State& state, ForceWorkspace& work, double dt, const ForceOptions& options) const {
+Tally ForceLoopOf<Law, rotation>::walls(State& state, ForceWorkspace& work, double dt,
+                                        const ForceOptions& options) const {
   Tally tally;
   for (auto& w : state.walls) w.force = Vec3{};
   for (auto& c : state.wall_contacts) {
@@ -186,7 +198,8 @@ Tally ForceLoopOf<Law, rotation>::walls(State& state, ForceWorkspace& work, doub
     const auto pair = Law::template pair<double>(constants, p.w, INFINITY);
     History<Law, double> history;
     std::copy_n(c.history.begin(), history.size(), history.begin());
-    const Dashpot<double> dashpot{options.normal_ratio, options.shear_ratio, v.w > 0 ? 1 / v.w : 0, dt > 0 ? 1 / dt : 0};
+    const Dashpot<double> dashpot{options.normal_ratio, options.shear_ratio, v.w > 0 ? 1 / v.w : 0,
+                                  dt > 0 ? 1 / dt : 0};
     const auto f = interact<Law, true>(pair, g, inc, g.overlap > 0, history, dashpot);
     std::copy_n(history.begin(), history.size(), c.history.begin());
 

@@ -3,7 +3,8 @@
 
 namespace eg {
 
-/// The loop of one law; defined and instantiated in one source file a law (force_loop_<law>.cpp), to keep compile times low.
+/// The loop of one law; defined and instantiated in one source file a law (force_loop_<law>.cpp), to keep compile times
+/// low.
 template <class Law>
 std::unique_ptr<ForceLoop> make_force_loop_of(bool frictionless, bool rotation);
 

@@ -12,7 +12,9 @@ std::size_t chunks_of(std::size_t n) { return (n + chunk - 1) / chunk; }
 
 /// −α|F| sign(v) (Cundall 1987).
 Vec3 local_force(const Vec3& f, const Vec3& v, double alpha) {
-  const auto one = [alpha](double force, double speed) { return speed == 0 ? 0.0 : -alpha * std::abs(force) * std::copysign(1.0, speed); };
+  const auto one = [alpha](double force, double speed) {
+    return speed == 0 ? 0.0 : -alpha * std::abs(force) * std::copysign(1.0, speed);
+  };
   return {one(f.x, v.x), one(f.y, v.y), one(f.z, v.z)};
 }
 

@@ -31,8 +31,8 @@ void apply_stage(const Scene& scene, const State& state, Engine& engine) {
 bool finished(const State& state, const StageSpec& s, const RunStatus& status) {
   if (given(s.until_steps) && static_cast<double>(state.stage_step) < s.until_steps) return false;
   if (given(s.until_time) && state.stage_time < s.until_time) return false;
-  if (given(s.until_axial_strain) &&
-      std::abs(stage_strain(state)[state.dimension == 3 ? 2 : 1]) < s.until_axial_strain) return false;
+  if (given(s.until_axial_strain) && std::abs(stage_strain(state)[state.dimension == 3 ? 2 : 1]) < s.until_axial_strain)
+    return false;
   if (given(s.until_stress_error) && !(status.stress_error < s.until_stress_error)) return false;
   if (given(s.until_unbalanced) && !(status.unbalanced < s.until_unbalanced)) return false;
   return true;
@@ -68,10 +68,12 @@ bool run_stages(const Scene& scene, State& state, StepPolicy& policy, const RunO
     control_cell(state, stage, taken);
     engine.kick(policy.next_step(state));
 
-    const RunStatus status{stage, engine, engine.unbalanced_ratio(), stress_error(state, stage), engine.kick_sums().kinetic};
+    const RunStatus status{stage, engine, engine.unbalanced_ratio(), stress_error(state, stage),
+                           engine.kick_sums().kinetic};
     if (!std::isfinite(status.kinetic))
-      throw RunError(fmt::format("step {}: the motion is no longer finite; the step {:.3g} s was unstable: use policy = \"certified\"",
-                                 state.step, taken));
+      throw RunError(fmt::format(
+          "step {}: the motion is no longer finite; the step {:.3g} s was unstable: use policy = \"certified\"",
+          state.step, taken));
     const bool ends = finished(state, stage, status);
     if (observer.step) observer.step(state, status);
     if (observer.record && (ends || due(state, stage, strain_before))) observer.record(state, status);
@@ -79,9 +81,10 @@ bool run_stages(const Scene& scene, State& state, StepPolicy& policy, const RunO
       if (observer.stage_end) observer.stage_end(state, stage);
       if (++state.stage < scene.stages.size()) begin_stage(scene, state), apply_stage(scene, state, engine);
     } else if (static_cast<double>(state.stage_step) >= stage.max_steps) {
-      throw RunError(fmt::format("stage \"{}\" has not met its `until` within max_steps = {:.0f}: stress error {:.2e}, unbalanced force "
-                                 "{:.2e}; is the target possible, max_strain_rate high enough, damping on?",
-                                 stage.name, stage.max_steps, status.stress_error, status.unbalanced));
+      throw RunError(fmt::format(
+          "stage \"{}\" has not met its `until` within max_steps = {:.0f}: stress error {:.2e}, unbalanced force "
+          "{:.2e}; is the target possible, max_strain_rate high enough, damping on?",
+          stage.name, stage.max_steps, status.stress_error, status.unbalanced));
     }
     if (observer.snapshot && !ends && given(stage.snapshot_every_steps) &&
         std::fmod(static_cast<double>(state.stage_step), stage.snapshot_every_steps) == 0)

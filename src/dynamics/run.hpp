@@ -18,22 +18,22 @@ class StepPolicy {
 struct RunStatus {
   const StageSpec& stage;
   const Engine& engine;
-  double unbalanced = 0;        ///< mean net force over mean contact force [-]
-  double stress_error = 0;      ///< [-]
-  double kinetic = 0;           ///< [J]
+  double unbalanced = 0;    ///< mean net force over mean contact force [-]
+  double stress_error = 0;  ///< [-]
+  double kinetic = 0;       ///< [J]
 };
 
 /// Hears what happens; every call is optional.
 struct RunObserver {
-  std::function<void(const State&, const RunStatus&)> step;      ///< after every step (progress; keep it cheap)
-  std::function<void(const State&, const RunStatus&)> record;    ///< a row of the history is due
-  std::function<void(const State&)> snapshot;                    ///< a snapshot is due
-  std::function<void(const State&, const StageSpec&)> stage_end; ///< a stage has just ended
-  std::function<bool()> stop;                                    ///< true: leave as soon as possible
+  std::function<void(const State&, const RunStatus&)> step;       ///< after every step (progress; keep it cheap)
+  std::function<void(const State&, const RunStatus&)> record;     ///< a row of the history is due
+  std::function<void(const State&)> snapshot;                     ///< a snapshot is due
+  std::function<void(const State&, const StageSpec&)> stage_end;  ///< a stage has just ended
+  std::function<bool()> stop;                                     ///< true: leave as soon as possible
 };
 
-/// Runs (or goes on with) all stages. Returns false when the observer stopped it; the state can be resumed bit for bit then.
-/// Throws RunError when a stage does not end within its max_steps, or a position is no longer finite.
+/// Runs (or goes on with) all stages. Returns false when the observer stopped it; the state can be resumed bit for bit
+/// then. Throws RunError when a stage does not end within its max_steps, or a position is no longer finite.
 bool run_stages(const Scene& scene, State& state, StepPolicy& policy, const RunObserver& observer, bool scalar = false);
 
 }  // namespace eg

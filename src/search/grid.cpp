@@ -38,13 +38,14 @@ Frame make_frame(const Grains& grains, const Cell& cell, double least_extent) {
 }
 
 struct Level {
-  double largest = 0;                 // radius [m]
+  double largest = 0;  // radius [m]
   std::array<int, 3> n{1, 1, 1};
-  std::vector<Index> begin, items;    // grains of a cell: items[begin[c] … begin[c+1])
+  std::vector<Index> begin, items;  // grains of a cell: items[begin[c] … begin[c+1])
 
   std::size_t cell(int a, int b, int c) const {
     return (static_cast<std::size_t>(c) * static_cast<std::size_t>(n[1]) + static_cast<std::size_t>(b)) *
-               static_cast<std::size_t>(n[0]) + static_cast<std::size_t>(a);
+               static_cast<std::size_t>(n[0]) +
+           static_cast<std::size_t>(a);
   }
 };
 
@@ -106,14 +107,17 @@ std::vector<NearPair> find_pairs(const Grains& grains, const Cell& cell, double 
   if (grains.size() == 0) return {};
   double smallest = INFINITY, largest = 0;
   for (const auto& p : grains.position) {
-    if (!std::isfinite(p.x + p.y + p.z)) throw RunError("a grain's position is not finite: the step was unstable; use a smaller one");
+    if (!std::isfinite(p.x + p.y + p.z))
+      throw RunError("a grain's position is not finite: the step was unstable; use a smaller one");
     smallest = std::min(smallest, p.w), largest = std::max(largest, p.w);
   }
   const Frame frame = make_frame(grains, cell, 2 * largest);
   for (std::size_t k = 0; k < 3; ++k)
     if (frame.periodic[k] && frame.width[k] < 2 * largest + skin)
-      throw RunError(fmt::format("the periodic cell is {:.6g} m wide along {}, less than the largest diameter plus the list's skin, "
-                                 "{:.6g} m: use more grains or more lattice cells", frame.width[k], "xyz"[k], 2 * largest + skin));
+      throw RunError(fmt::format(
+          "the periodic cell is {:.6g} m wide along {}, less than the largest diameter plus the list's skin, "
+          "{:.6g} m: use more grains or more lattice cells",
+          frame.width[k], "xyz"[k], 2 * largest + skin));
 
   const auto class_of = [&](double r) { return static_cast<std::size_t>(std::log2(r / smallest) + 1e-9); };
   std::vector<Level> levels(class_of(largest) + 1);
@@ -147,7 +151,8 @@ std::vector<NearPair> find_pairs(const Grains& grains, const Cell& cell, double 
             const double reach = a.w + b.w + skin;
             if (dot(branch, branch) >= reach * reach) continue;
             const auto ii = static_cast<Index>(i);
-            found[k].push_back(ii <= j ? NearPair{ii, j, image} : NearPair{j, ii, static_cast<std::uint8_t>(26 - image)});
+            found[k].push_back(ii <= j ? NearPair{ii, j, image}
+                                       : NearPair{j, ii, static_cast<std::uint8_t>(26 - image)});
           }
         });
       }

@@ -1,6 +1,6 @@
 #pragma once
-// A hierarchy of uniform grids, one a size class (radii within a factor of two), so that the cost stays O(N) at any size
-// ratio. Pairs of unequal class are found from the smaller grain's side.
+// A hierarchy of uniform grids, one a size class (radii within a factor of two), so that the cost stays O(N) at any
+// size ratio. Pairs of unequal class are found from the smaller grain's side.
 #include <vector>
 
 #include "state/state.hpp"
@@ -13,8 +13,9 @@ struct NearPair {
   std::uint8_t image;
 };
 
-/// All pairs with gap < skin. Positions must lie in the cell along periodic directions. Deterministic order for any number
-/// of threads. Throws RunError when the cell is narrower than the largest diameter plus skin along a periodic direction.
+/// All pairs with gap < skin. Positions must lie in the cell along periodic directions. Deterministic order for any
+/// number of threads. Throws RunError when the cell is narrower than the largest diameter plus skin along a periodic
+/// direction.
 std::vector<NearPair> find_pairs(const Grains& grains, const Cell& cell, double skin);
 
 }  // namespace eg

@@ -27,7 +27,8 @@ void wrap(State& state) {
       back[k] = w;
       moved[i][static_cast<std::size_t>(k)] = static_cast<std::int8_t>(std::clamp(w, -100.0, 100.0));
     }
-    if (back.x != 0 || back.y != 0 || back.z != 0) grains.position[i].set(grains.position[i].vec() - state.cell.h * back);
+    if (back.x != 0 || back.y != 0 || back.z != 0)
+      grains.position[i].set(grains.position[i].vec() - state.cell.h * back);
   }
   auto& contacts = state.contacts;
   for (std::size_t c = 0; c < contacts.image.size(); ++c) {
@@ -121,7 +122,8 @@ void refresh_contacts(State& state) {
 #pragma omp parallel for schedule(dynamic) if (chunks > 1)
   for (std::size_t k = 0; k < chunks; ++k) {
     const std::size_t low = k * Contacts::chunk, high = std::min(n, low + Contacts::chunk);
-    auto o = std::lower_bound(order.begin(), order.end(), low, [&](std::size_t c, std::size_t g) { return old.i[c] < g; });
+    auto o =
+        std::lower_bound(order.begin(), order.end(), low, [&](std::size_t c, std::size_t g) { return old.i[c] < g; });
     for (std::size_t i = low; i < high; ++i) {
       const Quad a = state.grains.position[i];
       for (std::size_t p = list.begin[i]; p < list.begin[i + 1]; ++p) {
@@ -140,10 +142,12 @@ void refresh_contacts(State& state) {
   }
 
   Contacts fresh;
-  fresh.history_size = old.history_size, fresh.history_vectors = old.history_vectors, fresh.tail_vectors = old.tail_vectors;
+  fresh.history_size = old.history_size, fresh.history_vectors = old.history_vectors,
+  fresh.tail_vectors = old.tail_vectors;
   fresh.chunk_begin.assign(1, 0);
   constexpr std::size_t lanes = Contacts::lanes;
-  for (const auto& r : rows) fresh.chunk_begin.push_back(fresh.chunk_begin.back() + (r.size() + lanes - 1) / lanes * lanes);
+  for (const auto& r : rows)
+    fresh.chunk_begin.push_back(fresh.chunk_begin.back() + (r.size() + lanes - 1) / lanes * lanes);
   const std::size_t total = fresh.chunk_begin.back();
   fresh.i.resize(total), fresh.j.resize(total), fresh.image.resize(periodic ? total : 0);
   fresh.history.assign(total * fresh.history_size, 0.0);

@@ -56,7 +56,8 @@ void sort_grains(State& state) {
     std::swap(c.i[k], c.j[k]);  // the other side is i now: the image turns round and vectors change sign
     if (!c.image.empty()) c.image[k] = static_cast<std::uint8_t>(26 - c.image[k]);
     for (std::size_t h = 0; h < c.history_size; ++h)
-      if (h < 3 * c.history_vectors || h + 3 * c.tail_vectors >= c.history_size) c.history_at(k, h) = -c.history_at(k, h);
+      if (h < 3 * c.history_vectors || h + 3 * c.tail_vectors >= c.history_size)
+        c.history_at(k, h) = -c.history_at(k, h);
   }
   for (auto& w : state.wall_contacts) w.grain = rank[w.grain];
 }

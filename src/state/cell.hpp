@@ -9,14 +9,14 @@
 namespace eg {
 
 struct Cell {
-  static constexpr std::uint8_t home = 13;      ///< image code of the cell itself
+  static constexpr std::uint8_t home = 13;  ///< image code of the cell itself
   static constexpr std::size_t images = 27;
 
-  Mat3 h = Mat3::identity();                    ///< columns a, b, c [m]; h(1,0) = h(2,0) = h(2,1) = 0
-  Mat3 h_low;                                   ///< what h has lost to round-off so far (compensated sum), see deform()
+  Mat3 h = Mat3::identity();  ///< columns a, b, c [m]; h(1,0) = h(2,0) = h(2,1) = 0
+  Mat3 h_low;                 ///< what h has lost to round-off so far (compensated sum), see deform()
   std::array<bool, 3> periodic{false, false, false};
-  Vec3 origin;                                  ///< lower corner [m]
-  Mat3 rate;                                    ///< velocity gradient L [1/s], upper triangular, tension positive
+  Vec3 origin;  ///< lower corner [m]
+  Mat3 rate;    ///< velocity gradient L [1/s], upper triangular, tension positive
 
   bool any_periodic() const { return periodic[0] || periodic[1] || periodic[2]; }
   /// Code of the image displaced by (s0, s1, s2) edges, each −1, 0 or 1.
@@ -27,7 +27,7 @@ struct Cell {
     const auto s = steps(code);
     return h * Vec3{double(s[0]), double(s[1]), double(s[2])};
   }
-  double volume() const { return h(0, 0) * h(1, 1) * h(2, 2); }   ///< [m³]; 2D: h(2,2) = 1, so area per metre
+  double volume() const { return h(0, 0) * h(1, 1) * h(2, 2); }  ///< [m³]; 2D: h(2,2) = 1, so area per metre
   /// Perpendicular width along direction k [m]: distance of the two faces that edge k joins.
   double width(int k) const;
   /// Fractional coordinates of a point.

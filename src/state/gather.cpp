@@ -10,7 +10,8 @@ namespace {
 template <class Law>
 class Gatherer {
  public:
-  Gatherer(const Scene& scene, const State& state) : state_(state), kinds_(scene.materials.size()), arms_(arms_of(scene)) {
+  Gatherer(const Scene& scene, const State& state)
+      : state_(state), kinds_(scene.materials.size()), arms_(arms_of(scene)) {
     for (std::size_t a = 0; a < kinds_; ++a)
       for (std::size_t b = 0; b < kinds_; ++b) {
         Material ma = scene.materials[a], mb = scene.materials[b];
@@ -29,7 +30,8 @@ class Gatherer {
       p.branch = g.position[p.j].vec() + state_.cell.shift(list.image_of(c)) - g.position[p.i].vec();
       p.geometry = grain_grain(p.branch, g.radius(p.i), g.radius(p.j), arms_);
       if (list.history_vectors > 0) p.shear = {list.history_at(c, 0), list.history_at(c, 1), list.history_at(c, 2)};
-      const auto pair = Law::template pair<double>(constants_[g.material_of(p.i) * kinds_ + g.material_of(p.j)], g.radius(p.i), g.radius(p.j));
+      const auto pair = Law::template pair<double>(constants_[g.material_of(p.i) * kinds_ + g.material_of(p.j)],
+                                                   g.radius(p.i), g.radius(p.j));
       respond(p, pair, visit, growth);
     }
   }
@@ -45,7 +47,8 @@ class Gatherer {
       p.branch = wall.normal * -height;
       p.geometry = grain_plane(height, wall.normal, radius, arms_);
       if (state_.contacts.history_vectors > 0) p.shear = {contact.history[0], contact.history[1], contact.history[2]};
-      respond(p, Law::template pair<double>(constants_[g.material_of(p.i) * kinds_ + wall.material], radius, INFINITY), visit, growth);
+      respond(p, Law::template pair<double>(constants_[g.material_of(p.i) * kinds_ + wall.material], radius, INFINITY),
+              visit, growth);
     }
   }
 

@@ -23,8 +23,8 @@ struct ContactSpec {
 struct Grading {
   enum class Kind { single, uniform, table };
   Kind kind = Kind::single;
-  double min_radius = 0, max_radius = 0;        ///< [m], single: both the same; uniform: by number
-  std::vector<std::array<double, 2>> passing;   ///< table: {diameter [m], passing by mass [0..1]}, ascending
+  double min_radius = 0, max_radius = 0;       ///< [m], single: both the same; uniform: by number
+  std::vector<std::array<double, 2>> passing;  ///< table: {diameter [m], passing by mass [0..1]}, ascending
 };
 
 /// [specimen]
@@ -32,96 +32,97 @@ struct SpecimenSpec {
   enum class Source { lattice, cloud, file };
   Source source = Source::cloud;
   // lattice
-  std::string lattice;                 ///< "sc", "bcc", "fcc", "hcp", "square", "hexagonal"
-  std::array<int, 3> cells{4, 4, 4};   ///< conventional (rectangular) unit cells along x, y, z
-  double radius = not_given;           ///< [m]
-  double overlap = 0;                  ///< δ/d of touching neighbours, d = 2R [-]
-  double pressure = not_given;         ///< instead of overlap: isotropic pressure that the lattice carries [Pa] (2D: N/m)
-  double radius_scatter = 0;           ///< standard deviation over mean radius [-], normal, cut at ±3 SD
+  std::string lattice;                ///< "sc", "bcc", "fcc", "hcp", "square", "hexagonal"
+  std::array<int, 3> cells{4, 4, 4};  ///< conventional (rectangular) unit cells along x, y, z
+  double radius = not_given;          ///< [m]
+  double overlap = 0;                 ///< δ/d of touching neighbours, d = 2R [-]
+  double pressure = not_given;  ///< instead of overlap: isotropic pressure that the lattice carries [Pa] (2D: N/m)
+  double radius_scatter = 0;    ///< standard deviation over mean radius [-], normal, cut at ±3 SD
   // cloud
   std::size_t count = 0;
   Grading grading;
-  double solid_fraction = 0.3;         ///< of the cloud, before any compression
+  double solid_fraction = 0.3;            ///< of the cloud, before any compression
   std::array<double, 3> aspect{1, 1, 1};  ///< edges of the box relative to x
   // file
-  std::string path;                    ///< packing text, or snapshot (.h5), relative to the scene file
+  std::string path;  ///< packing text, or snapshot (.h5), relative to the scene file
 };
 
 struct WallSpec {
   std::string name;
-  Vec3 point, normal;                  ///< [m], [-]; grains lie on the side the normal points to
-  Vec3 velocity;                       ///< [m/s]
-  std::string material;                ///< a name of [material.*]
+  Vec3 point, normal;    ///< [m], [-]; grains lie on the side the normal points to
+  Vec3 velocity;         ///< [m/s]
+  std::string material;  ///< a name of [material.*]
 };
 
 /// [boundary]
 struct BoundarySpec {
   enum class Kind { periodic, free, box };
-  Kind kind = Kind::periodic;          ///< box: the six (2D: four) planes of the specimen's box become walls
-  std::string wall_material;           ///< box only
-  std::vector<WallSpec> walls;         ///< further planes, [[boundary.wall]]
+  Kind kind = Kind::periodic;   ///< box: the six (2D: four) planes of the specimen's box become walls
+  std::string wall_material;    ///< box only
+  std::vector<WallSpec> walls;  ///< further planes, [[boundary.wall]]
 };
 
 /// [damping]
 struct DampingSpec {
-  double local = 0;                    ///< α [-]: −α|F| sign(v), moments too
-  double mass = 0;                     ///< [1/s]: −c m v, −c I ω
-  double normal_ratio = 0;             ///< ξn [-]: contact dashpot 2ξn√(m* kn)
-  double shear_ratio = 0;              ///< ξs [-]: contact dashpot 2ξs√(m* kt)
+  double local = 0;         ///< α [-]: −α|F| sign(v), moments too
+  double mass = 0;          ///< [1/s]: −c m v, −c I ω
+  double normal_ratio = 0;  ///< ξn [-]: contact dashpot 2ξn√(m* kn)
+  double shear_ratio = 0;   ///< ξs [-]: contact dashpot 2ξs√(m* kt)
 };
 
 /// [timestep]
 struct TimestepSpec {
-  std::string policy = "certified";    ///< "certified", "fixed" or "estimate:NAME"
-  double fixed = not_given;            ///< [s], policy fixed
-  double safety = 0.9;                 ///< fraction of the certified step
+  std::string policy = "certified";  ///< "certified", "fixed" or "estimate:NAME"
+  double fixed = not_given;          ///< [s], policy fixed
+  double safety = 0.9;               ///< fraction of the certified step
 };
 
 /// How one strain component of the periodic cell is driven.
 struct ComponentControl {
   enum class Kind { rate, stress };
   Kind kind = Kind::rate;
-  double value = 0;                    ///< strain rate [1/s] or stress [Pa] (2D: N/m), compression positive
+  double value = 0;  ///< strain rate [1/s] or stress [Pa] (2D: N/m), compression positive
 };
 
 /// [[stage]]
 struct StageSpec {
   std::string name;
-  std::optional<double> friction;              ///< replaces every material's friction during this stage
-  std::optional<double> local_damping;         ///< replaces damping.local during this stage
+  std::optional<double> friction;       ///< replaces every material's friction during this stage
+  std::optional<double> local_damping;  ///< replaces damping.local during this stage
   // strain: axes x, y, z, then yz, xz, xy (engineering shear rate, for a cell with tilt)
   std::array<ComponentControl, 6> control{};
-  std::optional<double> mean_stress;           ///< p' held constant through the components listed in `mean_axes` [Pa]
+  std::optional<double> mean_stress;  ///< p' held constant through the components listed in `mean_axes` [Pa]
   std::array<bool, 3> mean_axes{false, false, false};
-  double max_strain_rate = 10;                 ///< cap of every servoed component [1/s]
+  double max_strain_rate = 10;  ///< cap of every servoed component [1/s]
   // until (all that are given must hold; time/steps/strain end the stage by themselves)
-  double until_stress_error = not_given;       ///< |σ − target|/target [-]
-  double until_unbalanced = not_given;         ///< mean unbalanced force over mean contact force [-]
-  double until_time = not_given;               ///< [s], since the stage began
-  double until_steps = not_given;              ///< since the stage began
-  double until_axial_strain = not_given;       ///< |εz| (2D: |εy|) since the stage began [-]
-  double max_steps = 5e6;                      ///< a stage that has not ended by then stops the run with an error
+  double until_stress_error = not_given;  ///< |σ − target|/target [-]
+  double until_unbalanced = not_given;    ///< mean unbalanced force over mean contact force [-]
+  double until_time = not_given;          ///< [s], since the stage began
+  double until_steps = not_given;         ///< since the stage began
+  double until_axial_strain = not_given;  ///< |εz| (2D: |εy|) since the stage began [-]
+  double max_steps = 5e6;                 ///< a stage that has not ended by then stops the run with an error
   // record
-  double record_every_steps = not_given;       ///< default: 100 rows spread over the stage's known end, else every 1000 steps
+  double record_every_steps =
+      not_given;  ///< default: 100 rows spread over the stage's known end, else every 1000 steps
   double record_every_strain = not_given;
   double snapshot_every_steps = not_given;
 };
 
 struct Scene {
   std::string title = "untitled";
-  std::string file = "<memory>";       ///< where it was read, for messages and relative paths
-  std::string text;                    ///< the whole file, kept in every snapshot
+  std::string file = "<memory>";  ///< where it was read, for messages and relative paths
+  std::string text;               ///< the whole file, kept in every snapshot
   int dimension = 3;
-  bool rotation = true;                ///< false: grains never turn (no rotational degrees of freedom anywhere)
+  bool rotation = true;  ///< false: grains never turn (no rotational degrees of freedom anywhere)
   std::uint64_t seed = 1;
-  std::vector<Material> materials;     ///< the first one is the grains' unless stated
+  std::vector<Material> materials;  ///< the first one is the grains' unless stated
   ContactSpec contact;
   SpecimenSpec specimen;
   BoundarySpec boundary;
   DampingSpec damping;
   TimestepSpec timestep;
-  Vec3 gravity;                        ///< [m/s²]
-  bool energy = false;                 ///< [record] energy: keep the energy ledger
+  Vec3 gravity;         ///< [m/s²]
+  bool energy = false;  ///< [record] energy: keep the energy ledger
   std::vector<StageSpec> stages;
 };
 

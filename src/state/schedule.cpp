@@ -11,8 +11,8 @@ void make_schedule(Schedule& out, std::size_t grains, std::size_t chunk, std::sp
   out.target.assign(j.begin(), j.end());
   out.halo_begin.assign(1, static_cast<Index>(grains));
 
-  std::vector<Index> owner;                          // grain of each halo row
-  std::vector<Index> row_of(grains, no_index);       // its row within the chunk under way
+  std::vector<Index> owner;                     // grain of each halo row
+  std::vector<Index> row_of(grains, no_index);  // its row within the chunk under way
   for (std::size_t k = 0; k < chunks; ++k) {
     const std::size_t low = k * chunk, high = std::min(grains, low + chunk), first = owner.size();
     for (std::size_t c = chunk_begin[k]; c < chunk_begin[k + 1]; ++c) {
@@ -28,7 +28,7 @@ void make_schedule(Schedule& out, std::size_t grains, std::size_t chunk, std::sp
     out.halo_begin.push_back(static_cast<Index>(grains + owner.size()));
   }
 
-  out.gather_begin.assign(grains + 1, 0);            // counting sort of halo rows by their grain
+  out.gather_begin.assign(grains + 1, 0);  // counting sort of halo rows by their grain
   for (const Index grain : owner) ++out.gather_begin[grain + 1];
   for (std::size_t i = 0; i < grains; ++i) out.gather_begin[i + 1] += out.gather_begin[i];
   out.gather_row.resize(owner.size());

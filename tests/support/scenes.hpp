@@ -36,15 +36,18 @@ inline Scene lattice_scene(const std::string& law, const std::string& lattice, s
 
 inline State state_of(const Scene& scene) { return make_state(scene, make_packing(scene)); }
 
-/// A random overlapping cluster in free space: `count` grains of radius 0.7…1.3 mm, thrown into a cube that they overfill.
+/// A random overlapping cluster in free space: `count` grains of radius 0.7…1.3 mm, thrown into a cube that they
+/// overfill.
 inline State cluster(const Scene& scene, std::size_t count, std::uint64_t seed, double fill = 1.2) {
   Random random(seed);
   Packing p;
   p.dimension = scene.dimension;
-  const double edge = 2e-3 * (scene.dimension == 3 ? std::cbrt(static_cast<double>(count) / fill) : std::sqrt(static_cast<double>(count) / fill));
+  const double edge = 2e-3 * (scene.dimension == 3 ? std::cbrt(static_cast<double>(count) / fill)
+                                                   : std::sqrt(static_cast<double>(count) / fill));
   p.box = {edge, edge, scene.dimension == 3 ? edge : 1.0};
   for (std::size_t i = 0; i < count; ++i) {
-    p.position.push_back({random.uniform(0, edge), random.uniform(0, edge), scene.dimension == 3 ? random.uniform(0, edge) : 0.0});
+    p.position.push_back(
+        {random.uniform(0, edge), random.uniform(0, edge), scene.dimension == 3 ? random.uniform(0, edge) : 0.0});
     p.radius.push_back(random.uniform(0.7e-3, 1.3e-3));
   }
   Scene free = scene;

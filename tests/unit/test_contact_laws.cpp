@@ -66,7 +66,9 @@ Sample<Law> sample(Random& random, double slip, double preload) {
   n *= 1 / norm(n);
   const double overlap = random.uniform(0.2e-6, 3e-6);
   s.branch = n * (s.ri + s.rj - overlap);
-  const auto vec = [&](double scale) { return Vec3{random.normal() * scale, random.normal() * scale, random.normal() * scale}; };
+  const auto vec = [&](double scale) {
+    return Vec3{random.normal() * scale, random.normal() * scale, random.normal() * scale};
+  };
   s.ui = vec(slip), s.uj = vec(slip), s.ti = vec(slip / 1e-3), s.tj = vec(slip / 1e-3);
   if constexpr (Law::history_vectors > 0) {
     const auto pair = Law::template pair<double>(Law::constants(both(), both(), 3), s.ri, s.rj);
@@ -78,7 +80,10 @@ Sample<Law> sample(Random& random, double slip, double preload) {
   return s;
 }
 
-template <class S> Vec<S> lift(const Vec3& v) { return {S(v.x), S(v.y), S(v.z)}; }
+template <class S>
+Vec<S> lift(const Vec3& v) {
+  return {S(v.x), S(v.y), S(v.z)};
+}
 
 /// Forces and moments (fx fy fz, mi, mj) and the new history of one sample in number type S; all lanes alike.
 template <class Law, class S>
@@ -90,7 +95,8 @@ std::vector<S> forces(const Sample<Law>& s) {
   const auto inc = increment<true>(g, Motion<S>{lift<S>(s.uj - s.ui), lift<S>(s.ti), lift<S>(s.tj)});
   History<Law, S> h;
   for (std::size_t k = 0; k < h.size(); ++k) h[k] = S(s.history[k]);
-  const auto f = interact<Law, false>(Law::template pair<S>(c, S(s.ri), S(s.rj)), g, inc, g.overlap > S(0.0), h, Dashpot<S>{});
+  const auto f =
+      interact<Law, false>(Law::template pair<S>(c, S(s.ri), S(s.rj)), g, inc, g.overlap > S(0.0), h, Dashpot<S>{});
   std::vector<S> out{f.on_j.x, f.on_j.y, f.on_j.z};
   if constexpr (Law::history_vectors > 0)
     for (const auto& m : {f.moment * g.arm_i, f.moment * g.arm_j}) out.insert(out.end(), {m.x, m.y, m.z});
@@ -98,8 +104,10 @@ std::vector<S> forces(const Sample<Law>& s) {
   return out;
 }
 
-template <class Law> class EveryLaw : public ::testing::Test {};
-using Tested = ::testing::Types<Linear, HertzMindlin, HertzMindlinRescale, Frictionless<Linear>, Frictionless<HertzMindlin>>;
+template <class Law>
+class EveryLaw : public ::testing::Test {};
+using Tested =
+    ::testing::Types<Linear, HertzMindlin, HertzMindlinRescale, Frictionless<Linear>, Frictionless<HertzMindlin>>;
 TYPED_TEST_SUITE(EveryLaw, Tested);
 
 TYPED_TEST(EveryLaw, SameForcesInEveryNumberType) {
@@ -124,9 +132,11 @@ TYPED_TEST(EveryLaw, StiffnessesAreDerivatives) {
   for (const double overlap : {1e-9, 1e-7, 1e-6, 1e-5}) {
     const double h = 1e-4 * overlap;
     const auto n = TypeParam::template normal<double>(p, overlap);
-    const double up = TypeParam::template normal<double>(p, overlap + h).force, down = TypeParam::template normal<double>(p, overlap - h).force;
+    const double up = TypeParam::template normal<double>(p, overlap + h).force,
+                 down = TypeParam::template normal<double>(p, overlap - h).force;
     EXPECT_NEAR(n.stiffness, (up - down) / (2 * h), 1e-7 * n.stiffness);
-    EXPECT_NEAR((TypeParam::normal_energy(p, overlap + h) - TypeParam::normal_energy(p, overlap - h)) / (2 * h), n.force, 1e-7 * n.force);
+    EXPECT_NEAR((TypeParam::normal_energy(p, overlap + h) - TypeParam::normal_energy(p, overlap - h)) / (2 * h),
+                n.force, 1e-7 * n.force);
     EXPECT_EQ(TypeParam::template normal<double>(p, 0).force, 0);
   }
 }
@@ -159,7 +169,8 @@ TEST(Contact, StoredShearKeepsItsLengthAndTurnsWithTheBody) {
 
 TEST(Batch, TransposesAreInverse) {
   std::array<Quad, 8> rows, back;
-  for (std::size_t k = 0; k < 8; ++k) rows[k] = {10.0 * double(k), 10.0 * double(k) + 1, 10.0 * double(k) + 2, 10.0 * double(k) + 3};
+  for (std::size_t k = 0; k < 8; ++k)
+    rows[k] = {10.0 * double(k), 10.0 * double(k) + 1, 10.0 * double(k) + 2, 10.0 * double(k) + 3};
   const std::array<Index, 8> index{0, 1, 2, 3, 4, 5, 6, 7};
   const auto c = load_quads<Batch>(rows.data(), index.data());
   for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(c.y[k] + 1000 * c.w[k], rows[k].y + 1000 * rows[k].w);

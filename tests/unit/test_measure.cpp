@@ -122,7 +122,6 @@ TEST(ContactNetwork, BackboneDoesNotDependOnTheOrder) {
 TEST(ContactNetwork, FabricOfIsotropicNormalsIsAThirdOfTheIdentity) {
   Random random(3);
   std::vector<ContactPoint> contacts;
-  Mat3 expected;
   for (int k = 0; k < 20000; ++k) {
     const Vec3 v{random.normal(), random.normal(), random.normal()};
     contacts.push_back(link(0, 1));

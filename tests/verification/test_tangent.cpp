@@ -36,7 +36,8 @@ Eigen::VectorXd forces_after(const Scene& scene, State state, const Eigen::Vecto
 }
 
 Eigen::MatrixXd dense(const std::vector<TangentBlock>& blocks, std::size_t grains) {
-  Eigen::MatrixXd k = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(6 * grains), static_cast<Eigen::Index>(6 * grains));
+  Eigen::MatrixXd k =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(6 * grains), static_cast<Eigen::Index>(6 * grains));
   for (const auto& b : blocks)
     for (std::size_t r = 0; r < 12; ++r)
       for (std::size_t c = 0; c < 12; ++c) {
@@ -51,7 +52,8 @@ Eigen::MatrixXd dense(const std::vector<TangentBlock>& blocks, std::size_t grain
 State loaded(const Scene& scene, double mobilised, std::uint64_t seed) {
   State state = test::cluster(scene, 12, seed);
   if (seed % 2 == 0)  // with a wall through it
-    state.walls.push_back({.point = {0.3e-3, 0, 0}, .normal = {1, 0, 0}, .velocity = {}, .material = 0, .force = {}, .moved = 0});
+    state.walls.push_back(
+        {.point = {0.3e-3, 0, 0}, .normal = {1, 0, 0}, .velocity = {}, .material = 0, .force = {}, .moved = 0});
   { Engine engine(scene, state); }
   Random random(seed);
   const auto shear = [&](const ContactPoint& p) {
@@ -64,13 +66,18 @@ State loaded(const Scene& scene, double mobilised, std::uint64_t seed) {
   for (const auto& [p, t] : set)
     for (int k = 0; k < 3; ++k) {
       const auto h = static_cast<std::size_t>(k);
-      if (p.j == no_index) state.wall_contacts[p.entry].history[h] = t[k];
-      else state.contacts.history_at(p.entry, h) = t[k];
+      if (p.j == no_index)
+        state.wall_contacts[p.entry].history[h] = t[k];
+      else
+        state.contacts.history_at(p.entry, h) = t[k];
     }
-  if (state.contacts.history_size > 3)  // rescaling has a kink between loading and unloading: stand on the unloading side
+  if (state.contacts.history_size >
+      3)  // rescaling has a kink between loading and unloading: stand on the unloading side
     for (const auto& [p, t] : set) {
-      if (p.j == no_index) state.wall_contacts[p.entry].history[3] *= 2;
-      else state.contacts.history_at(p.entry, 3) *= 2;
+      if (p.j == no_index)
+        state.wall_contacts[p.entry].history[3] *= 2;
+      else
+        state.contacts.history_at(p.entry, 3) *= 2;
     }
   return state;
 }
@@ -95,8 +102,8 @@ TEST_P(Tangent, ConsistentModeIsTheDerivativeOfTheForces) {
     for (std::size_t c = 0; c < n; ++c) {
       const bool turn = c % 6 >= 3;
       if (dimension == 2 && (c % 6 == 2 || c % 6 == 3 || c % 6 == 4)) continue;
-      // A sliding contact that moves backwards sticks: probe on the side where the state stays sliding, i.e. both one-sided
-      // differences agree only when it does. Small steps keep the second-order part below the tolerance.
+      // A sliding contact that moves backwards sticks: probe on the side where the state stays sliding, i.e. both
+      // one-sided differences agree only when it does. Small steps keep the second-order part below the tolerance.
       const double h = (turn ? 1e-9 / scale_u : 1e-9) * 1e-2;
       Eigen::VectorXd q = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));
       q[static_cast<Eigen::Index>(c)] = h;
@@ -114,16 +121,19 @@ TEST_P(Tangent, ConsistentModeIsTheDerivativeOfTheForces) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, Tangent, ::testing::ValuesIn([] {
-  std::vector<Case> cases;
-  for (const auto& law : law_names())
-    for (const double mobilised : {0.0, 0.5, 1.05})  // unloaded, sticking, sliding
-      for (const int dimension : {2, 3}) cases.push_back({law, mobilised, dimension});
-  return cases;
-}()), [](const auto& info) {
-  std::string name = info.param.law + "_" + std::to_string(static_cast<int>(100 * info.param.mobilised)) + "_" + std::to_string(info.param.dimension) + "d";
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-});
+                           std::vector<Case> cases;
+                           for (const auto& law : law_names())
+                             for (const double mobilised : {0.0, 0.5, 1.05})  // unloaded, sticking, sliding
+                               for (const int dimension : {2, 3}) cases.push_back({law, mobilised, dimension});
+                           return cases;
+                         }()),
+                         [](const auto& info) {
+                           std::string name = info.param.law + "_" +
+                                              std::to_string(static_cast<int>(100 * info.param.mobilised)) + "_" +
+                                              std::to_string(info.param.dimension) + "d";
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
 
 TEST(Tangent, ElasticModeEqualsConsistentWithoutForces) {
   // At vanishing overlap and no shear the geometric terms vanish: both modes agree.
@@ -142,7 +152,8 @@ TEST(Tangent, RigidMotion) {
   const State state = loaded(scene, 0.5, 7);
   const std::size_t n = state.grains.size();
   const Network net = linearise(scene, state);
-  const Eigen::MatrixXd elastic = Eigen::MatrixXd(stiffness_matrix(net)), consistent = dense(consistent_blocks(scene, state), n);
+  const Eigen::MatrixXd elastic = Eigen::MatrixXd(stiffness_matrix(net)),
+                        consistent = dense(consistent_blocks(scene, state), n);
   Eigen::VectorXd shift = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(6 * n)), turn = shift, turned_force = shift;
   const Vec3 omega{0.3, -0.5, 0.8};
   for (std::size_t i = 0; i < n; ++i) {
@@ -154,8 +165,12 @@ TEST(Tangent, RigidMotion) {
   visit_contacts(scene, state, [&](const ContactPoint& p) {
     const Vec3 f = cross(omega, p.force()), m = cross(omega, cross(p.geometry.n, p.shear));
     const auto i = static_cast<Eigen::Index>(6 * p.i), j = static_cast<Eigen::Index>(6 * p.j);
-    turned_force.segment<6>(i) += (Eigen::VectorXd(6) << -f.x, -f.y, -f.z, m.x * p.geometry.arm_i, m.y * p.geometry.arm_i, m.z * p.geometry.arm_i).finished();
-    turned_force.segment<6>(j) += (Eigen::VectorXd(6) << f.x, f.y, f.z, m.x * p.geometry.arm_j, m.y * p.geometry.arm_j, m.z * p.geometry.arm_j).finished();
+    turned_force.segment<6>(i) +=
+        (Eigen::VectorXd(6) << -f.x, -f.y, -f.z, m.x * p.geometry.arm_i, m.y * p.geometry.arm_i, m.z * p.geometry.arm_i)
+            .finished();
+    turned_force.segment<6>(j) +=
+        (Eigen::VectorXd(6) << f.x, f.y, f.z, m.x * p.geometry.arm_j, m.y * p.geometry.arm_j, m.z * p.geometry.arm_j)
+            .finished();
   });
   const double scale = elastic.cwiseAbs().maxCoeff();
   EXPECT_LT((elastic * shift).cwiseAbs().maxCoeff(), 1e-12 * scale);
