@@ -1,5 +1,6 @@
 #pragma once
-// K·x and M^−½ K M^−½·x straight from the springs, without a matrix: about 70 bytes a contact.
+// K·x and M^−½ K M^−½·x straight from the springs, without a matrix: about 70 bytes a contact, eight contacts at a
+// time.
 //
 // Result: bitwise the same for any number of threads. Grains are cut into fixed chunks; a chunk owns the springs whose
 // first grain it holds and sums what they exert on grains of other chunks into private (halo) rows, which the last pass
@@ -30,29 +31,36 @@ class StiffnessOperator {
 
  private:
   static constexpr std::size_t chunk_grains = 1024;
+  static constexpr std::size_t lanes = 8;
 
   struct alignas(64) Row {
-    double u[3] = {}, turn[3] = {}, pad[2] = {};
+    Quad u, turn;
   };
-  struct Link {  ///< what one spring needs
-    Vec3 n;
-    double normal, tangential, arm_i, arm_j;
-    Index i, j;        ///< rows to read; a wall reads the row of zeros behind the grains
-    Index to_i, to_j;  ///< rows of sums to add to
+  struct alignas(64) Links {  ///< what eight springs need; unused lanes are zero springs
+    double nx[lanes] = {}, ny[lanes] = {}, nz[lanes] = {};
+    double tangential[lanes] = {}, excess[lanes] = {};  ///< kt, kn − kt
+    double arm_i[lanes] = {}, arm_j[lanes] = {};
+    Index i[lanes] = {}, j[lanes] = {};  ///< rows to read; a wall reads the row of zeros behind the grains
+    Index sum_j[lanes] = {};             ///< row of sums to add to; that of i follows from the chunk
   };
   struct Chunk {
-    std::size_t first_link, first_sum;
+    std::size_t first_grain, first_links, first_sum;
   };
 
   void build_chunks(const Network& network);
-  void load(std::size_t grain, const double* x) const;
-  void sum_chunk(std::size_t chunk) const;
-  void store(std::size_t grain, double* y) const;
+  void add_link(const Spring& spring, std::size_t lane, Index j, Index sum_j);
+  template <int... component>
+  void run(const double* x, double* y) const;
+  template <int... component>
+  void load(std::size_t chunk, const double* x) const;
+  void sum(std::size_t chunk) const;
+  template <int... component>
+  void store(std::size_t chunk, double* y) const;
 
   std::size_t grains_, width_;
-  std::vector<int> components_;             ///< entry of a row (0…5) behind each degree of freedom of a grain
+  bool solid_, rotation_;
   std::vector<double> scale_, turn_scale_;  ///< m^−½, I^−½ a grain
-  std::vector<Link> links_;
+  std::vector<Links> links_;
   std::vector<Chunk> chunks_;                         ///< one more than there are, as an end mark
   std::vector<std::uint32_t> halo_begin_, halo_sum_;  ///< sums of other chunks for a grain, in chunk order
   mutable std::vector<Row> rows_, sums_;
