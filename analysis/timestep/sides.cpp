@@ -44,13 +44,18 @@ Sides::Sides(const Network& network)
   }
 }
 
+Eigen::Matrix<double, 6, 1> Sides::scale(std::size_t grain) const {
+  Eigen::Matrix<double, 6, 1> scale = active_;
+  scale.head<3>() *= std::sqrt(network_.inverse_mass[grain]);
+  scale.tail<3>() *= network_.rotation ? std::sqrt(network_.inverse_inertia[grain]) : 0.0;
+  return scale;
+}
+
 Eigen::Matrix<double, 3, 6> Sides::scaled_matrix(std::size_t grain, const Side& side) const {
   const Spring& spring = network_.springs[side.spring];
   Eigen::Matrix<double, 3, 6> b = side_matrix(spring, side.matrix);
   if (side.own_image) b += side_matrix(spring, ContactSide::second);
-  b.leftCols<3>() *= std::sqrt(network_.inverse_mass[grain]);
-  b.rightCols<3>() *= network_.rotation ? std::sqrt(network_.inverse_inertia[grain]) : 0.0;
-  return b * active_.asDiagonal();
+  return b * scale(grain).asDiagonal();
 }
 
 double block_upper_bound(const Block& block, std::size_t terms) {

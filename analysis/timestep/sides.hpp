@@ -4,6 +4,7 @@
 // With k the contact stiffness, B the side matrix and A = k^½ B M^−½ (3×6), the block of a grain is Σ Aᵀ W A over its
 // sides with a weight W (3×3, symmetric) for each.
 #include <Eigen/Core>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -42,19 +43,38 @@ class Sides {
   /// B M^−½ of a side; columns of what is not a degree of freedom are 0.
   Eigen::Matrix<double, 3, 6> scaled_matrix(std::size_t grain, const Side& side) const;
 
-  /// Σ (BM^−½)ᵀ C (BM^−½) over the sides of a grain, with the contact's 3×3 matrix C = stiffness(side).
+  /// Σ (BM^−½)ᵀ C (BM^−½) over the sides of a grain, with the contact's symmetric 3×3 matrix C = stiffness(side).
   template <class Stiffness>
   Block block(std::size_t grain, Stiffness stiffness) const {
     Block sum = Block::Zero();
     for (const Side& side : of(grain)) {
-      const Eigen::Matrix<double, 3, 6> b = scaled_matrix(grain, side);
-      const Eigen::Matrix<double, 3, 6> cb = stiffness(side) * b;
-      sum.noalias() += b.transpose() * cb;
+      const Spring& s = network_.springs[side.spring];
+      const Lever lever = lever_of(s, side);
+      const Eigen::Matrix3d c = stiffness(side);  // B = [sign, a n×]
+      Eigen::Matrix3d arm;
+      arm << 0, -s.n.z, s.n.y, s.n.z, 0, -s.n.x, -s.n.y, s.n.x, 0;
+      arm *= lever.arm;
+      const Eigen::Matrix3d turned = c.lazyProduct(arm);
+      sum.topLeftCorner<3, 3>() += std::abs(lever.sign) * c;
+      sum.topRightCorner<3, 3>() += lever.sign * turned;
+      sum.bottomRightCorner<3, 3>() -= arm.lazyProduct(turned);
     }
-    return sum;
+    sum.bottomLeftCorner<3, 3>() = sum.topRightCorner<3, 3>().transpose();
+    const Eigen::Matrix<double, 6, 1> d = scale(grain);
+    return d.asDiagonal() * sum * d.asDiagonal();
   }
 
  private:
+  struct Lever {
+    double sign, arm;  ///< B = [sign 1, arm n×]
+  };
+  static Lever lever_of(const Spring& s, const Side& side) {
+    if (side.own_image) return {0, s.arm_i + s.arm_j};
+    return side.matrix == ContactSide::first ? Lever{-1, s.arm_i} : Lever{1, s.arm_j};
+  }
+  /// M^−½ of a grain; 0 for what is not a degree of freedom.
+  Eigen::Matrix<double, 6, 1> scale(std::size_t grain) const;
+
   const Network& network_;
   Eigen::Matrix<double, 6, 1> active_;  ///< 1 for degrees of freedom of this dimension, 0 for the rest
   std::vector<std::uint32_t> begin_;

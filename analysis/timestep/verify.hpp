@@ -17,13 +17,13 @@ struct VerifyOptions {
 struct StabilityBracket {
   double stable = 0, unstable = 0;  ///< [s]: no growth seen at the first, growth at the second
   std::int64_t steps = 0;           ///< taken in all
-  int trials = 0;                   ///< steps sizes tried
+  int trials = 0;                   ///< step sizes tried
 };
 
-/// Brackets the largest stable step by bisection. A run is unstable once the amplitude exceeds what a bounded leapfrog
-/// motion can reach: near the limit that is 1/√(1 − (ωΔt/2)²) times the start, here at most 1/√(tolerance/2); a run is
-/// long enough that a mode beyond the limit by the tolerance must have passed that mark, even if the perturbation held
-/// only 1e-8 of it. Throws std::invalid_argument unless guess > 0 and the network has a spring on a movable grain.
+/// Brackets the largest stable step by bisection. A step counts as unstable when the amplitude passes what no stable
+/// step can reach, 2k + 1 times the start after k steps; that is a proof but for round-off. It counts as stable when
+/// this has not happened after as many steps as a mode beyond the limit by a quarter of the tolerance would need, even
+/// if the perturbation held only 1e-5 of it. Throws std::invalid_argument unless guess > 0 and something can vibrate.
 StabilityBracket verify_by_stepping(const Network& network, const VerifyOptions& options);
 
 }  // namespace eg

@@ -109,8 +109,16 @@ void StiffnessOperator::sum(std::size_t chunk) const {
   const Row* rows = rows_.data();
   Row* sums = sums_.data();
   Row* own = sums + (begin.first_sum - begin.first_grain);  // halo rows only add: never before the array
+  constexpr std::size_t ahead = 4;                          // blocks between a prefetch and its use
   for (std::size_t b = begin.first_links; b < end.first_links; ++b) {
     const Links& s = links_[b];
+    if (b + ahead < end.first_links) {
+      const Links& later = links_[b + ahead];
+      for (std::size_t k = 0; k < lanes; ++k) {
+        __builtin_prefetch(rows + later.j[k]);
+        __builtin_prefetch(sums + later.sum_j[k], 1);
+      }
+    }
     const Vec<Batch> n{load_lanes(s.nx), load_lanes(s.ny), load_lanes(s.nz)};
     const Batch arm_i = load_lanes(s.arm_i), arm_j = load_lanes(s.arm_j);
     const auto u_i = columns([&](int k) { return vector_of(rows[s.i[k]].u); });
