@@ -8,6 +8,7 @@
 #include "contact/laws.hpp"
 #include "io/stage_reader.hpp"
 #include "io/text_file.hpp"
+#include "io/toml_parse.hpp"
 #include "io/toml_reader.hpp"
 #include "state/grading_preset.hpp"
 
@@ -285,13 +286,9 @@ Scene parse_scene(std::string_view text, const std::string& file) {
   Scene scene;
   scene.file = file;
   scene.text = text;
-  try {
-    const toml::table table = toml::parse(text, file);
-    if (table.empty()) throw input_error(file, 0, "is an empty scene:", "it holds no keys", "see cases/ for examples");
-    read_top(TomlReader(table, file, ""), scene);
-  } catch (const toml::parse_error& e) {
-    throw one_line_error(file, static_cast<long>(e.source().begin.line), "is not valid TOML:", e.description());
-  }
+  const toml::table table = parse_toml(text, file);
+  if (table.empty()) throw input_error(file, 0, "is an empty scene:", "it holds no keys", "see cases/ for examples");
+  read_top(TomlReader(table, file, ""), scene);
   return scene;
 }
 

@@ -73,6 +73,12 @@ const std::vector<SceneCase> scene_cases{
     {5, "poisson = 0.2",
      "s.toml:5: is not valid TOML: Error while parsing key-value pair: cannot redefine existing floating-point "
      "'poisson'"},
+    {5, "density = 2650\n\u00b5 = 1",
+     "s.toml:6: is not valid TOML: a character beyond ASCII stands outside quotes and comments; put it in quotes"},
+    {1, "title = \"\"\"a\"\"\"\"\n\u041b = 1",
+     "s.toml:2: is not valid TOML: a character beyond ASCII stands outside quotes and comments; put it in quotes"},
+    {1, "title = \"\"\"a\\\n  \u00a7\"\"\"",
+     "s.toml:2: is not valid TOML: a character beyond ASCII stands outside quotes and comments; put it in quotes"},
     // keys
     {1, "dimensoin = 3", "s.toml:1: dimensoin is not a known key; did you mean \"dimension\"?"},
     {1, "title = \"x\"", "s.toml:1: dimension is missing; add \"dimension\" to the top of the file"},

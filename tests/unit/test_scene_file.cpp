@@ -66,6 +66,8 @@ until = { axial_strain = 0.5, steps = 1e6 }
 record = { every_strain = 1e-3, snapshot_every_steps = 20000 }
 )";
 
+std::string triaxial_without_title() { return std::string(triaxial).substr(std::string(triaxial).find('\n') + 1); }
+
 TEST(SceneFile, ReadsAFullScene) {
   const auto scene = eg::parse_scene(triaxial, "dir/triaxial.toml");
   EXPECT_EQ(scene.title, "triaxial");
@@ -183,6 +185,11 @@ TEST(SceneFile, ReadsEveryKindOfGrading) {
   EXPECT_EQ(curve.kind, table);
   EXPECT_EQ(curve.passing[1], (std::array{2e-3, 0.4}));
   EXPECT_EQ(curve.max_radius, 2e-3);
+}
+
+TEST(SceneFile, TextsAndCommentsMayHoldAnyLetter) {
+  const std::string title = "title = \"\"\"\u00b5 \\\" # \u03c6\"\"\"\"  # \u03b5 'quotes\" in comments\n";
+  EXPECT_EQ(eg::parse_scene("\xEF\xBB\xBF" + title + triaxial_without_title()).title, "\u00b5 \" # \u03c6\"");
 }
 
 TEST(SceneFile, ReadsEveryCaseOfTheProject) {
