@@ -74,11 +74,16 @@ const std::vector<SceneCase> scene_cases{
      "s.toml:5: is not valid TOML: Error while parsing key-value pair: cannot redefine existing floating-point "
      "'poisson'"},
     {5, "density = 2650\n\u00b5 = 1",
-     "s.toml:6: is not valid TOML: a character beyond ASCII stands outside quotes and comments; put it in quotes"},
+     "s.toml:6: is not valid TOML: a character beyond ASCII stands outside quotes and comments; put it in double "
+     "quotes"},
     {1, "title = \"\"\"a\"\"\"\"\n\u041b = 1",
-     "s.toml:2: is not valid TOML: a character beyond ASCII stands outside quotes and comments; put it in quotes"},
-    {1, "title = \"\"\"a\\\n  \u00a7\"\"\"",
-     "s.toml:2: is not valid TOML: a character beyond ASCII stands outside quotes and comments; put it in quotes"},
+     "s.toml:2: is not valid TOML: a character beyond ASCII stands outside quotes and comments; put it in double "
+     "quotes"},
+    {1, "title = '\u00b5'",
+     "s.toml:1: is not valid TOML: a character beyond ASCII stands in single quotes; use double quotes"},
+    {1, "title = \"\\\u00b5\"",
+     "s.toml:1: is not valid TOML: a backslash stands before a character beyond ASCII; write \\\\ for a backslash"},
+    {1, "title = \"\xff\"", "s.toml:1: is not valid TOML: the text is not UTF-8; save the file as UTF-8"},
     // keys
     {1, "dimensoin = 3", "s.toml:1: dimensoin is not a known key; did you mean \"dimension\"?"},
     {1, "title = \"x\"", "s.toml:1: dimension is missing; add \"dimension\" to the top of the file"},

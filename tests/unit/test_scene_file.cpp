@@ -188,8 +188,11 @@ TEST(SceneFile, ReadsEveryKindOfGrading) {
 }
 
 TEST(SceneFile, TextsAndCommentsMayHoldAnyLetter) {
-  const std::string title = "title = \"\"\"\u00b5 \\\" # \u03c6\"\"\"\"  # \u03b5 'quotes\" in comments\n";
-  EXPECT_EQ(eg::parse_scene("\xEF\xBB\xBF" + title + triaxial_without_title()).title, "\u00b5 \" # \u03c6\"");
+  const std::string start =
+      "\xEF\xBB\xBFtitle = \"\"\"\u00b5 \\\" # \\\n \u00a7\U0001F30D\"\"\"\"  # \u03b5 'quotes\" in comments\n";
+  const auto scene = eg::parse_scene(start + triaxial_without_title());
+  EXPECT_EQ(scene.title, "\u00b5 \" # \u00a7\U0001F30D\"");
+  EXPECT_TRUE(scene.text.starts_with(start));
 }
 
 TEST(SceneFile, ReadsEveryCaseOfTheProject) {
