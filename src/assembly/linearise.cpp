@@ -32,7 +32,7 @@ TangentBlock tangent(const ContactPoint& p, const State& state,
     g = grain_grain<D12>(constant(p.branch) + uj - ui, ri, rj, arms);
   }
   const auto inc = increment<true>(g, Motion<D12>{uj - ui, ti, tj});
-  History<Law, D12> history;
+  ContactHistory<Law, D12> history;
   for (std::size_t h = 0; h < history.size(); ++h)
     history[h] = wall ? D12(state.wall_contacts[p.entry].history[h]) : D12(state.contacts.history_at(p.entry, h));
   const auto c = gather_struct<typename Law::template Constants<D12>, typename Law::template Constants<double>, D12>(

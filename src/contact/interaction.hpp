@@ -92,7 +92,7 @@ struct ContactForce {
 /// Force of one contact. `touching` masks lanes that overlap; history of the others is cleared.
 template <class Law, bool damped, class S, class M>
 EG_INLINE ContactForce<S> interact(const typename Law::template Pair<S>& pair, const Geometry<S>& g,
-                                   const Increment<S>& inc, M touching, History<Law, S>& history,
+                                   const Increment<S>& inc, M touching, ContactHistory<Law, S>& history,
                                    const Dashpot<S>& dashpot) {
   Strain<S> strain{select(touching, g.overlap, S(0.0)), inc.slip};
   for (std::size_t k = 0; k < Law::history_vectors; ++k)

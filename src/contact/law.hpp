@@ -55,7 +55,7 @@ concept ContactLaw = requires(const Material& m, const typename L::template Cons
 template <class L>
 inline constexpr std::size_t history_size = L::history_vectors * 3 + L::history_scalars;
 template <class L, class S>
-using History = std::array<S, history_size<L>>;
+using ContactHistory = std::array<S, history_size<L>>;
 
 template <class S, std::size_t H>
 EG_INLINE Vec<S> history_vector(const std::array<S, H>& h, std::size_t k) {

@@ -98,7 +98,7 @@ class ForceLoopOf final : public ForceLoop {
           [&](std::size_t l) { return state.grains.material[ci[c + l]] * kinds_ + state.grains.material[cj[c + l]]; });
       const auto pair = Law::template pair<S>(constants, pi.w, pj.w);
 
-      History<Law, S> history;
+      ContactHistory<Law, S> history;
       double* stored =
           list.history.data() + (c / Contacts::lanes * list.history_size) * Contacts::lanes + c % Contacts::lanes;
       for (std::size_t h = 0; h < history.size(); ++h) history[h] = load_values<S>(stored + h * Contacts::lanes);
@@ -196,7 +196,7 @@ Tally ForceLoopOf<Law, rotation>::walls(State& state, ForceWorkspace& work, doub
     const auto inc = increment<rotation>(g, motion);
     const auto& constants = constants_[state.grains.material_of(c.grain) * kinds_ + wall.material];
     const auto pair = Law::template pair<double>(constants, p.w, INFINITY);
-    History<Law, double> history;
+    ContactHistory<Law, double> history;
     std::copy_n(c.history.begin(), history.size(), history.begin());
     const Dashpot<double> dashpot{options.normal_ratio, options.shear_ratio, v.w > 0 ? 1 / v.w : 0,
                                   dt > 0 ? 1 / dt : 0};

@@ -110,11 +110,11 @@ void visit_ledger(Archive& a, L& ledger) {
 
 template <class Archive, class P>
 void visit_plan(Archive& a, P& plan) {
-  auto& [due, dt, safe, upper] = plan;
+  auto& [due, dt, safe, horizon] = plan;
   a.value("policy/due", "-", due);
   a.value("policy/dt", "s", dt);
   a.value("policy/safe", "s", safe);
-  a.value("policy/upper", "s", upper);
+  a.value("policy/horizon", "-", horizon);
 }
 
 /// Archive has value(name, unit, number or array of numbers), array(name, unit, vector), column(name, unit, vector of

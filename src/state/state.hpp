@@ -76,7 +76,7 @@ struct StepPlan {
   std::uint64_t due = 0;        ///< step of the next evaluation; 0: at once
   double dt = 0;                ///< step in force [s]
   double safe = 0;              ///< certified limit of the step [s]
-  double upper = 0;             ///< upper bound of the limit [s]
+  std::uint64_t horizon = 0;    ///< steps an evaluation looks ahead
 };
 
 struct State {

@@ -41,7 +41,7 @@ TEST(HertzMindlin, CheckValues) {
 
 TEST(HertzMindlin, RescalingShortensShearOnUnloadingOnly) {
   const auto p = HertzMindlinRescale::pair<double>(HertzMindlinRescale::constants(both(), both(), 3), 1e-3, 1e-3);
-  History<HertzMindlinRescale, double> h{};
+  ContactHistory<HertzMindlinRescale, double> h{};
   const Vec3 zero{};
   HertzMindlinRescale::respond<double>(p, {1e-6, {1e-8, 0, 0}}, h);
   const double t = h[0];
@@ -55,7 +55,7 @@ template <class Law>
 struct Sample {
   Vec3 branch, ui, uj, ti, tj;
   double ri, rj;
-  History<Law, double> history{};
+  ContactHistory<Law, double> history{};
 };
 
 template <class Law>
@@ -93,7 +93,7 @@ std::vector<S> forces(const Sample<Law>& s) {
       &table, true, [](std::size_t) { return std::size_t{0}; });
   const auto g = grain_grain<S>(lift<S>(s.branch), S(s.ri), S(s.rj), Arms::middle);
   const auto inc = increment<true>(g, Motion<S>{lift<S>(s.uj - s.ui), lift<S>(s.ti), lift<S>(s.tj)});
-  History<Law, S> h;
+  ContactHistory<Law, S> h;
   for (std::size_t k = 0; k < h.size(); ++k) h[k] = S(s.history[k]);
   const auto f =
       interact<Law, false>(Law::template pair<S>(c, S(s.ri), S(s.rj)), g, inc, g.overlap > S(0.0), h, Dashpot<S>{});

@@ -1,0 +1,94 @@
+#include "app/prepare.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "base/error.hpp"
+#include "base/progress.hpp"
+#include "boundary/cell_control.hpp"
+#include "io/packing_file.hpp"
+#include "io/scene_file.hpp"
+#include "specimen/make_packing.hpp"
+#include "specimen/make_state.hpp"
+
+namespace eg {
+
+InputKind kind_of(const std::string& path) {
+  if (!std::filesystem::exists(path)) throw input_error(path, 0, "the file", "does not exist", "check the path");
+  if (std::filesystem::is_directory(path)) throw input_error(path, 0, "this", "is a folder, not a file", "name a scene, a snapshot or a packing");
+  if (looks_like_snapshot(path)) return InputKind::snapshot;
+  if (std::filesystem::path(path).extension() == ".toml") return InputKind::scene;
+  std::ifstream in(path);
+  for (std::string line; std::getline(in, line);) {
+    const auto first = line.find_first_not_of(" \t\r");
+    if (first == std::string::npos || line[first] == '#') continue;
+    return std::isdigit(static_cast<unsigned char>(line[first])) || line[first] == '.' || line[first] == '+' || line[first] == '-'
+               ? InputKind::packing
+               : InputKind::scene;
+  }
+  return InputKind::packing;  // its reader says that it is empty
+}
+
+State make_specimen(const Scene& scene) {
+  if (scene.specimen.source != SpecimenSpec::Source::file) return make_state(scene, make_packing(scene));
+  const std::string path = resolve_path(scene, scene.specimen.path);
+  if (!looks_like_snapshot(path)) return make_state(scene, read_packing(path));
+  State state = read_snapshot(path).state;  // grains, contacts and cell; the new scene's stages begin
+  if (state.dimension != scene.dimension)
+    throw input_error(scene.file, 0, "specimen.path", fmt::format("is a {}D snapshot in a {}D scene", state.dimension, scene.dimension));
+  state.stage = 0, state.step = 0, state.time = 0, state.ledger = {}, state.policy = {}, state.dt = 0;
+  state.friction.clear();
+  return state;
+}
+
+Snapshot bare_packing(const std::string& path, const BareFlags& f) {
+  const Packing packing = read_packing(path);
+  std::string text = fmt::format("title = \"bare packing\"\ndimension = {}\nrotation = {}\n[material.grain]\n", packing.dimension, !f.no_rotation);
+  const auto line = [&](const char* key, double value) {
+    if (!std::isnan(value)) text += fmt::format("{} = {:e}\n", key, value);
+  };
+  line("shear_modulus", f.shear_modulus), line("poisson", f.poisson), line("density", f.density), line("friction", f.friction);
+  line("normal_stiffness", f.normal_stiffness), line("shear_stiffness", f.shear_stiffness);
+  text += fmt::format("[contact]\nlaw = \"{}\"\narms = \"{}\"\n[specimen]\nsource = \"file\"\npath = '{}'\n[boundary]\ntype = \"periodic\"\n", f.law, f.arms,
+                      std::filesystem::absolute(path).string());
+  try {
+    const Scene scene = parse_scene(text, path);
+    return {scene, make_state(scene, packing)};
+  } catch (const InputError& e) {
+    throw InputError(fmt::format("{}; give the material of a bare packing by flags, e.g. --law hertz-mindlin --shear-modulus 29e9 "
+                                 "--poisson 0.12 --density 2650 --friction 0.25, or use a scene", e.what()));
+  }
+}
+
+std::string run_note(const State& state, const RunStatus& status) {
+  return fmt::format("{}: p = {:.4g} {}, unbalanced {:.1e}, dt = {:.3g} s", status.stage.name, mean_stress(state),
+                     state.dimension == 3 ? "Pa" : "N/m", status.unbalanced, state.dt);
+}
+
+std::optional<double> stage_share(const State& state, const StageSpec& s) {
+  double share = 2;
+  const auto count = [&](double done, double target) {
+    if (!std::isnan(target)) share = std::min(share, target > 0 ? done / target : 1.0);
+  };
+  count(static_cast<double>(state.stage_step), s.until_steps);
+  count(state.stage_time, s.until_time);
+  count(std::abs(stage_strain(state)[state.dimension == 3 ? 2 : 1]), s.until_axial_strain);
+  if (share > 1.5) return std::nullopt;
+  return std::min(share, 1.0);
+}
+
+void run_quietly(const Scene& scene, State& state) {
+  Controller controller(scene);
+  Progress progress("preparing", 0, "steps");
+  RunObserver observer;
+  observer.step = [&](const State& s, const RunStatus& status) {
+    progress.update(static_cast<double>(s.step), [&] { return run_note(s, status); });
+  };
+  run_stages(scene, state, controller, observer);
+}
+
+}  // namespace eg

@@ -1,0 +1,40 @@
+#pragma once
+// From what the user names (scene, snapshot or bare packing) to a scene and a state.
+#include <optional>
+#include <string>
+
+#include "dynamics/run.hpp"
+#include "io/snapshot.hpp"
+#include "timestep/controller.hpp"
+
+namespace eg {
+
+/// Material and law for a bare packing, from flags; what is not given stays unset.
+struct BareFlags {
+  std::string law = "hertz-mindlin";
+  double shear_modulus = Material::unset, poisson = Material::unset, density = Material::unset, friction = Material::unset;
+  double normal_stiffness = Material::unset, shear_stiffness = Material::unset;
+  std::string arms = "overlap";
+  bool no_rotation = false;
+};
+
+/// What a file is, by its content.
+enum class InputKind { scene, snapshot, packing };
+InputKind kind_of(const std::string& path);
+
+/// The scene's specimen as a state, before any stage.
+State make_specimen(const Scene& scene);
+
+/// A packing file with the material of the flags, as a scene. Throws InputError when a constant of the law is missing.
+Snapshot bare_packing(const std::string& path, const BareFlags& flags);
+
+/// Runs the remaining stages with a progress bar and nothing else (for commands that only want the packing).
+void run_quietly(const Scene& scene, State& state);
+
+/// A progress note of a run: "p = 1.00e+05 Pa, unbalanced 1.2e-04".
+std::string run_note(const State& state, const RunStatus& status);
+
+/// How far a stage has come, where that can be told [0, 1]; else nothing.
+std::optional<double> stage_share(const State& state, const StageSpec& stage);
+
+}  // namespace eg
