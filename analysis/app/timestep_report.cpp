@@ -34,7 +34,7 @@ std::string text_of(const TimestepReport& r) {
   const auto& s = r.summary;
   const auto& v = r.interval;
   std::string out = fmt::format("{}{}\n", r.name, r.title.empty() ? "" : ": " + r.title);
-  const auto line = [&](const char* key, const std::string& value) { out += fmt::format("  {:<22}{}\n", key, value); };
+  const auto line = [&](const char* key, const std::string& value) { out += fmt::format("  {:<24}{}\n", key, value); };
   line("particles", fmt::format("{} ({}D, {} rotation)", r.particles, r.dimension, r.rotation ? "with" : "without"));
   line("contacts", fmt::format("{}, coordination {:.2f}, at most {}", r.contacts, s.coordination_mean, s.coordination_max));
   line("mass", fmt::format("{:.4g} … {:.4g} kg", s.mass_min, s.mass_max));
@@ -85,6 +85,9 @@ Figure figure_of(const TimestepReport& r) {
   std::vector<LimitRow> rows;
   for (const auto& e : r.estimates) rows.push_back({e.name, e.dt / r.interval.dt_limit_upper});
   Figure figure = limit_chart(rows, r.interval.dt_safe / r.interval.dt_limit_upper);
+  figure.title = r.title.empty() ? r.name : r.title;
+  figure.subtitle = fmt::format("{} particles, {} contacts; exact limit {:.4g} … {:.4g} s, proved", r.particles, r.contacts,
+                                r.interval.dt_safe, r.interval.dt_limit_upper);
   return figure;
 }
 

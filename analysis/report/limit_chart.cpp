@@ -38,7 +38,7 @@ Figure limit_chart(std::vector<LimitRow> rows, double proved) {
                        {.from = proved, .to = 1, .colour = interval},
                        {.from = 1, .label = "exact limit", .colour = {0.13, 0.13, 0.15}, .dash = Dash::solid}};
   figure.keys = {{"stable", stable, Fill::solid, Marker::circle}, {"UNSTABLE", unstable, Fill::hatched, Marker::cross}};
-  if (proved < 1) figure.keys.push_back({"proved interval of the limit", interval});
+  if (proved < 0.99) figure.keys.push_back({"proved interval of the limit", interval});
   figure.height = 130 + 22 * static_cast<double>(std::max<std::size_t>(rows.size(), 1));
   figure.width = 640;
   return figure;

@@ -14,7 +14,8 @@ struct LimitRow {
 
 /// One bar a row on a logarithmic axis, from the limit (1) to the ratio, greatest ratio on top. Right of 1 the plane is
 /// shaded as unstable. `proved` is the ratio of the step that is proved stable to the limit: the interval [proved, 1]
-/// is drawn as a narrow band. Rows whose ratio is not positive and finite are left out.
+/// is drawn as a band, too narrow to be seen (and so without a key) when it is below 1 %. Rows whose ratio is not
+/// positive and finite are left out.
 Figure limit_chart(std::vector<LimitRow> rows, double proved = 1);
 
 }  // namespace eg
