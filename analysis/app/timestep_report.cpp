@@ -56,7 +56,7 @@ std::string text_of(const TimestepReport& r) {
     line("  found by stepping", fmt::format("{:.6g} s runs, {:.6g} s blows up   ({} steps)", r.bracket->stable, r.bracket->unstable, r.bracket->steps));
   line("limiting particle", fmt::format("id {}, radius {:.4g} m, {} contacts, {:.1f} % of the mode", r.limiting_id, r.limiting_radius, v.coordination, 100 * v.grain_share));
   line("grains in the mode", fmt::format("{:.1f} (participation number)", v.participation));
-  out += "\n" + estimate_table(r).text();
+  out += fmt::format("\n{}", estimate_table(r).text());
   out += fmt::format("\nstep = 2/ω_max for undamped motion with the contacts as they are; {}\n", duration_text(r.elapsed));
   return out;
 }
