@@ -80,7 +80,7 @@ void Controller::evaluate(State& state) {
   for (const auto& s : net.springs) foreseen += s.normal * std::pow(s.arm_i + s.arm_j, 2);
 
   const double cap = free_limit(state);
-  plan.safe = net.springs.empty() ? cap : std::min(cap, 2 / std::sqrt(splitting_bound(net, {.scalar_sweeps = 8, .matrix_sweeps = 0}).value));
+  plan.safe = net.springs.empty() ? cap : std::min(cap, 2 / std::sqrt(splitting_bound(net, {.matrix_sweeps = 0}).value));
   const auto& spec = scene_.timestep;
   if (spec.policy == "certified") plan.dt = spec.safety * plan.safe;
   else if (spec.policy == "fixed") plan.dt = spec.fixed;

@@ -59,6 +59,12 @@ void WeightedContacts::set_weights(SplittingWeights weights) {
     matrix_of_[weights_.matrix_spring[m]] = static_cast<Index>(m);
     refresh(m);
   }
+  grains_.clear();
+  for (const Index c : weights_.matrix_spring)
+    for (const Index g : {sides_.network().springs[c].i, sides_.network().springs[c].j})
+      if (g != no_index) grains_.push_back(g);
+  std::sort(grains_.begin(), grains_.end());
+  grains_.erase(std::unique(grains_.begin(), grains_.end()), grains_.end());
 }
 
 Matrix3 WeightedContacts::weighted_stiffness(const Side& side) const {
@@ -66,8 +72,8 @@ Matrix3 WeightedContacts::weighted_stiffness(const Side& side) const {
   if (side.role == Side::Role::alone) return k;
   const bool first = side.role == Side::Role::first;
   if (const Index m = matrix_of_[side.spring]; m != no_index) return first ? pairs_[m].first : pairs_[m].second;
-  const double log_t = weights_.log_scalar[side.spring];
-  return (1 + std::exp(first ? log_t : -log_t)) * k;
+  const double t = weights_.scalar[side.spring];
+  return (1 + (first ? t : 1 / t)) * k;
 }
 
 void WeightedContacts::refresh(std::size_t matrix) {
@@ -85,7 +91,7 @@ void WeightedContacts::refresh(std::size_t matrix) {
 
 void WeightedContacts::make_matrices(const std::vector<double>& lambda, double hot) {
   const double threshold = hot * *std::max_element(lambda.begin(), lambda.end());
-  SplittingWeights next{weights_.log_scalar, {}, {}};
+  SplittingWeights next{weights_.scalar, {}, {}};
   const auto& springs = sides_.network().springs;
   for (std::size_t c = 0; c < springs.size(); ++c) {
     const Index m = matrix_of_[c];
@@ -93,28 +99,23 @@ void WeightedContacts::make_matrices(const std::vector<double>& lambda, double h
       continue;
     next.matrix_spring.push_back(static_cast<Index>(c));
     next.log_matrix.push_back(m != no_index ? weights_.log_matrix[m]
-                                            : Matrix3(weights_.log_scalar[c] * Matrix3::Identity()));
+                                            : Matrix3(std::log(weights_.scalar[c]) * Matrix3::Identity()));
   }
   set_weights(std::move(next));
 }
 
 void WeightedContacts::sweep(int squarings) {
   const auto& springs = sides_.network().springs;
-  std::vector<Index> grains;
-  for (const Index c : weights_.matrix_spring) grains.push_back(springs[c].i), grains.push_back(springs[c].j);
-  std::sort(grains.begin(), grains.end());
-  grains.erase(std::unique(grains.begin(), grains.end()), grains.end());
-
-  std::vector<BlockPower> power(grains.size(), BlockPower(Block::Zero()));
-  const auto size = static_cast<std::ptrdiff_t>(grains.size());
+  std::vector<BlockPower> power(grains_.size(), BlockPower(Block::Zero()));
+  const auto size = static_cast<std::ptrdiff_t>(grains_.size());
 #pragma omp parallel for schedule(static) if (size > 256)
   for (std::ptrdiff_t k = 0; k < size; ++k) {
-    BlockPower p(block(grains[static_cast<std::size_t>(k)]));
+    BlockPower p(block(grains_[static_cast<std::size_t>(k)]));
     for (int s = 0; s < squarings; ++s) p.square();
     power[static_cast<std::size_t>(k)] = p;
   }
   const auto power_of = [&](Index grain) -> const BlockPower& {
-    return power[static_cast<std::size_t>(std::lower_bound(grains.begin(), grains.end(), grain) - grains.begin())];
+    return power[static_cast<std::size_t>(std::lower_bound(grains_.begin(), grains_.end(), grain) - grains_.begin())];
   };
 
   const double step = std::min(0.3, 2 / (std::exp2(squarings) + 1));

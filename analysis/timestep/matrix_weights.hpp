@@ -13,9 +13,11 @@ class WeightedContacts {
  public:
   WeightedContacts(const Sides& sides, SplittingWeights weights);
 
-  /// Scalars may be changed in place, matrices by set_weights() only.
-  SplittingWeights& weights() { return weights_; }
+  const SplittingWeights& weights() const { return weights_; }
   void set_weights(SplittingWeights weights);
+
+  /// The grains of contacts that have matrices, ascending.
+  const std::vector<Index>& matrix_grains() const { return grains_; }
 
   /// S_i.
   Block block(std::size_t grain) const {
@@ -42,6 +44,7 @@ class WeightedContacts {
   SplittingWeights weights_;
   std::vector<Index> matrix_of_;  ///< a spring: its place in the matrices, or no_index
   std::vector<Pair> pairs_;
+  std::vector<Index> grains_;
 };
 
 }  // namespace eg

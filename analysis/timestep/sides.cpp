@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace eg {
 namespace {
@@ -24,23 +25,22 @@ Sides::Sides(const Network& network)
     : network_(network), begin_(network.size() + 1, 0), split_(network.springs.size(), 0) {
   active_.setZero();
   for (const int component : active_components(network)) active_(component) = 1;
-  std::vector<std::vector<Side>> lists(network.size());
-  for (std::size_t c = 0; c < network.springs.size(); ++c) {
-    const Spring& s = network.springs[c];
+  const auto& springs = network.springs;
+  for (const Spring& s : springs) {  // begin_[g + 1]: how many of grain g
+    if (can_move(network, s.i)) ++begin_[s.i + 1];
+    if (s.j != no_index && s.j != s.i && can_move(network, s.j)) ++begin_[s.j + 1];
+  }
+  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+  sides_.resize(begin_.back());
+  std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
+  for (std::size_t c = 0; c < springs.size(); ++c) {
+    const Spring& s = springs[c];
     const auto spring = static_cast<Index>(c);
     const bool moves_i = can_move(network, s.i), moves_j = s.j != no_index && can_move(network, s.j);
     using enum Side::Role;
-    if (s.i == s.j) {
-      if (moves_i) lists[s.i].push_back({spring, alone, ContactSide::first, true});
-      continue;
-    }
-    split_[c] = moves_i && moves_j;
-    if (moves_i) lists[s.i].push_back({spring, moves_j ? first : alone, ContactSide::first, false});
-    if (moves_j) lists[s.j].push_back({spring, moves_i ? second : alone, ContactSide::second, false});
-  }
-  for (std::size_t g = 0; g < lists.size(); ++g) {
-    sides_.insert(sides_.end(), lists[g].begin(), lists[g].end());
-    begin_[g + 1] = static_cast<std::uint32_t>(sides_.size());
+    split_[c] = moves_i && moves_j && s.i != s.j;
+    if (moves_i) sides_[next[s.i]++] = {spring, split_[c] ? first : alone, ContactSide::first, s.i == s.j};
+    if (moves_j && s.i != s.j) sides_[next[s.j]++] = {spring, moves_i ? second : alone, ContactSide::second, false};
   }
 }
 

@@ -40,6 +40,9 @@ class Sides {
   /// Whether a contact joins two different grains that can move.
   bool is_split(std::size_t spring) const { return split_[spring] != 0; }
 
+  /// M^−½ of a grain; 0 for what is not a degree of freedom.
+  Eigen::Matrix<double, 6, 1> scale(std::size_t grain) const;
+
   /// B M^−½ of a side; columns of what is not a degree of freedom are 0.
   Eigen::Matrix<double, 3, 6> scaled_matrix(std::size_t grain, const Side& side) const;
 
@@ -72,9 +75,6 @@ class Sides {
     if (side.own_image) return {0, s.arm_i + s.arm_j};
     return side.matrix == ContactSide::first ? Lever{-1, s.arm_i} : Lever{1, s.arm_j};
   }
-  /// M^−½ of a grain; 0 for what is not a degree of freedom.
-  Eigen::Matrix<double, 6, 1> scale(std::size_t grain) const;
-
   const Network& network_;
   Eigen::Matrix<double, 6, 1> active_;  ///< 1 for degrees of freedom of this dimension, 0 for the rest
   std::vector<std::uint32_t> begin_;
@@ -89,24 +89,5 @@ double block_upper_bound(const Block& block, std::size_t terms);
 /// True only if the largest eigenvalue is below sigma: Cholesky of σ − block succeeds with a margin for round-off
 /// (Demmel 1989). Far cheaper than block_upper_bound().
 bool block_is_below(const Block& block, std::size_t terms, double sigma);
-
-/// The greatest block_upper_bound() of all grains, and whose it is. block(grain) makes the block.
-struct BlockMaximum {
-  double value = 0;
-  Index grain = no_index;  ///< no_index when no grain has a side
-};
-template <class MakeBlock>
-BlockMaximum block_maximum(const Sides& sides, MakeBlock make_block) {
-  BlockMaximum maximum;
-  for (std::size_t g = 0; g < sides.size(); ++g) {
-    const std::size_t terms = sides.of(g).size();
-    if (terms == 0) continue;
-    const Block block = make_block(g);
-    if (block_is_below(block, terms, maximum.value)) continue;
-    const double bound = block_upper_bound(block, terms);
-    if (bound > maximum.value) maximum = {bound, static_cast<Index>(g)};
-  }
-  return maximum;
-}
 
 }  // namespace eg

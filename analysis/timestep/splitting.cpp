@@ -2,109 +2,94 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "timestep/block_power.hpp"
 #include "timestep/matrix_weights.hpp"
+#include "timestep/scalar_weights.hpp"
 
 namespace eg {
 namespace {
 
-constexpr double widest_log = 7;  // T between e^−7 and e^7: beyond it a contact is one-sided anyway
-
-/// λmax(S_i), a grain: exact for those that may be the largest, a few per cent low for the rest.
-struct Estimates {
-  std::vector<double> grain;
-  double maximum = 0;
-};
-
-Estimates estimate(const Sides& sides, const WeightedContacts& contacts) {
-  Estimates estimates{std::vector<double>(sides.size(), 0.0)};
-  auto& lambda = estimates.grain;
-  const auto size = static_cast<std::ptrdiff_t>(sides.size());
+/// Ranges of the blocks that have matrices in them; block_ranges() knows the rest.
+void matrix_ranges(const WeightedContacts& contacts, BlockRanges& ranges) {
+  const std::vector<Index> grains = contacts.matrix_grains();
+  const auto size = static_cast<std::ptrdiff_t>(grains.size());
 #pragma omp parallel for schedule(static) if (size > 256)
-  for (std::ptrdiff_t g = 0; g < size; ++g) {
-    const auto grain = static_cast<std::size_t>(g);
-    if (sides.of(grain).empty()) continue;
-    const Block block = contacts.block(grain);
+  for (std::ptrdiff_t k = 0; k < size; ++k) {
+    const Index g = grains[static_cast<std::size_t>(k)];
+    const Block block = contacts.block(g);
     BlockPower power(block);
-    for (int k = 0; k < 4; ++k) power.square();
-    lambda[grain] = power.trace_ratio(block);
+    for (int s = 0; s < 5; ++s) power.square();
+    ranges.low[g] = power.trace_ratio(block);
+    ranges.high[g] = power.trace_root() * (1 + 1e-10);
   }
-  if (size == 0) return estimates;
-  // The ratio of traces at p = 16 is at most 5 % low, whatever the six eigenvalues are.
-  const double close = 0.95 * *std::max_element(lambda.begin(), lambda.end());
-#pragma omp parallel for schedule(static) if (size > 256)
-  for (std::ptrdiff_t g = 0; g < size; ++g) {
-    const auto grain = static_cast<std::size_t>(g);
-    if (lambda[grain] < close || sides.of(grain).empty()) continue;
-    lambda[grain] = block_upper_bound(contacts.block(grain), sides.of(grain).size());
-  }
-  estimates.maximum = *std::max_element(lambda.begin(), lambda.end());
-  return estimates;
 }
 
-/// t ← t λ_j / λ_i for every contact: evens out the two grains.
-void even_out(const Sides& sides, const std::vector<double>& lambda, std::vector<double>& log_t) {
-  const auto& springs = sides.network().springs;
-  for (std::size_t c = 0; c < springs.size(); ++c)
-    if (sides.is_split(c)) {
-      const double change = std::log(lambda[springs[c].j] / lambda[springs[c].i]);
-      if (std::isfinite(change)) log_t[c] = std::clamp(log_t[c] + change, -widest_log, widest_log);
-    }
+/// The greatest block_upper_bound() of all grains, and whose it is.
+SplittingBound block_maximum(const Sides& sides, const WeightedContacts& contacts, const BlockRanges& ranges) {
+  SplittingBound maximum;
+  std::vector<Index> grains;
+  const double least = ranges.low.empty() ? 0 : *std::max_element(ranges.low.begin(), ranges.low.end());
+  for (std::size_t g = 0; g < sides.size(); ++g)
+    if (!sides.of(g).empty() && ranges.high[g] >= least) grains.push_back(static_cast<Index>(g));
+  std::stable_sort(grains.begin(), grains.end(), [&](Index a, Index b) { return ranges.low[a] > ranges.low[b]; });
+  for (const Index g : grains) {
+    const std::size_t terms = sides.of(g).size();
+    if (ranges.high[g] < maximum.value) continue;
+    const Block block = contacts.block(g);
+    if (block_is_below(block, terms, maximum.value)) continue;
+    const double bound = block_upper_bound(block, terms);
+    if (bound > maximum.value) maximum.value = bound, maximum.grain = g;
+  }
+  return maximum;
 }
 
-/// Scalar sweeps from the weights given; leaves the best ones met. Returns the estimate that belongs to them.
-double sweep_scalars(const Sides& sides, const SplittingOptions& options, WeightedContacts& contacts,
-                     SplittingBound& bound) {
+/// Matrix sweeps at rising exponents, as long as they help; leaves the best weights met and their ranges.
+int sweep_matrices(const SplittingOptions& options, WeightedContacts& contacts, BlockRanges& ranges) {
   const double target = options.lower_bound * (1 + options.close_enough);
-  std::vector<double> best = contacts.weights().log_scalar;
-  double least = INFINITY;
-  int idle = 0;
-  for (int sweep = 0;; ++sweep) {
-    const Estimates lambda = estimate(sides, contacts);
-    if (sweep == 0) bound.plain = lambda.maximum;
-    idle = lambda.maximum < least * (1 - 1e-3) ? 0 : idle + 1;
-    if (lambda.maximum < least) least = lambda.maximum, best = contacts.weights().log_scalar;
-    if (least <= target || idle >= 4 || sweep == options.scalar_sweeps) break;
-    even_out(sides, lambda.grain, contacts.weights().log_scalar);
-    ++bound.scalar_sweeps;
-  }
-  contacts.weights().log_scalar = best;
-  return least;
-}
-
-/// Matrix sweeps at rising exponents, as long as they help; leaves the best weights met.
-void sweep_matrices(const Sides& sides, const SplittingOptions& options, double least, WeightedContacts& contacts,
-                    SplittingBound& bound) {
-  const double target = options.lower_bound * (1 + options.close_enough);
+  const auto maximum = [&] { return *std::max_element(ranges.low.begin(), ranges.low.end()); };
   SplittingWeights best = contacts.weights();
+  BlockRanges best_ranges = ranges;
+  double least = maximum();
+  int sweeps = 0;
   for (int squarings = 3; squarings <= 11 && least > target; ++squarings) {
-    contacts.make_matrices(estimate(sides, contacts).grain, options.hot);
+    contacts.make_matrices(ranges.low, options.hot);
     for (int sweep = 0; sweep < options.matrix_sweeps; ++sweep) contacts.sweep(squarings);
-    bound.matrix_sweeps += options.matrix_sweeps;
-    const double now = estimate(sides, contacts).maximum;
-    if (now < least) least = now, best = contacts.weights();
+    sweeps += options.matrix_sweeps;
+    matrix_ranges(contacts, ranges);
+    if (const double now = maximum(); now < least) least = now, best = contacts.weights(), best_ranges = ranges;
   }
-  contacts.set_weights(best);
+  contacts.set_weights(std::move(best));
+  ranges = std::move(best_ranges);
+  return sweeps;
 }
 
 }  // namespace
 
 SplittingBound splitting_bound(const Network& network, const SplittingOptions& options, SplittingWeights* weights) {
   const Sides sides(network);
-  const bool warm = weights && weights->log_scalar.size() == network.springs.size();
-  WeightedContacts contacts(sides,
-                            warm ? *weights : SplittingWeights{std::vector(network.springs.size(), 0.0), {}, {}});
-  SplittingBound bound;
-  double least = INFINITY;
-  if (contacts.weights().matrix_spring.empty())
-    least = sweep_scalars(sides, options, contacts, bound);
-  else
-    least = estimate(sides, contacts).maximum;
-  if (options.matrix_sweeps > 0) sweep_matrices(sides, options, least, contacts, bound);
-  const auto maximum = block_maximum(sides, [&](std::size_t grain) { return contacts.block(grain); });
-  bound.value = maximum.value;
-  bound.grain = maximum.grain;
+  if (sides.size() == 0) return {};
+  SplittingWeights start;
+  BlockRanges ranges(sides.size());
+  int scalar_sweeps = 0, matrix_sweeps = 0;
+  if (weights && weights->scalar.size() == network.springs.size()) {
+    start = *weights;
+    std::vector<Index> all(sides.size());
+    std::iota(all.begin(), all.end(), Index{0});
+    block_ranges(sides, start.scalar, all, ranges);
+  } else {
+    auto scalars = sweep_scalars(sides, {options.scalar_sweeps, options.lower_bound * (1 + options.close_enough)});
+    start.scalar = std::move(scalars.t);
+    ranges = std::move(scalars.ranges);
+    scalar_sweeps = scalars.sweeps;
+  }
+  WeightedContacts contacts(sides, std::move(start));
+  matrix_ranges(contacts, ranges);
+  if (options.matrix_sweeps > 0) matrix_sweeps = sweep_matrices(options, contacts, ranges);
+  SplittingBound bound = block_maximum(sides, contacts, ranges);
+  bound.scalar_sweeps = scalar_sweeps;
+  bound.matrix_sweeps = matrix_sweeps;
   if (weights) *weights = contacts.weights();
   return bound;
 }

@@ -16,7 +16,7 @@ namespace eg {
 /// The choice of T, one a contact. May be kept and passed on to the next evaluation of a network with the same springs
 /// in the same order (a warm start); one of another size is dropped.
 struct SplittingWeights {
-  std::vector<double> log_scalar;           ///< ln t, a spring
+  std::vector<double> scalar;               ///< t, a spring
   std::vector<Index> matrix_spring;         ///< springs with a matrix T instead, ascending
   std::vector<Eigen::Matrix3d> log_matrix;  ///< ln T of those, symmetric
 };
@@ -31,7 +31,6 @@ struct SplittingOptions {
 
 struct SplittingBound {
   double value = 0;        ///< λmax ≤ value [1/s²], round-off included
-  double plain = 0;        ///< with T = 1, cold start only: twice the self block [1/s²]; not inflated
   Index grain = no_index;  ///< the grain that decides it
   int scalar_sweeps = 0, matrix_sweeps = 0;
 };

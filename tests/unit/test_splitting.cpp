@@ -65,7 +65,7 @@ TEST(Splitting, AnyWeightsAreAProof) {
     Random random(seed);
     SplittingWeights weights;
     for (std::size_t c = 0; c < network.springs.size(); ++c) {
-      weights.log_scalar.push_back(3 * random.normal());
+      weights.scalar.push_back(std::exp(3 * random.normal()));
       if (random.uniform() < .5 && network.springs[c].j != no_index) {
         Eigen::Matrix3d m;
         for (double& v : m.reshaped()) v = 2 * random.normal();

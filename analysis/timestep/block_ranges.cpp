@@ -1,0 +1,171 @@
+#include "timestep/block_ranges.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+#include "base/batch.hpp"
+
+namespace eg {
+namespace {
+
+// Products and roots of traces of positive semidefinite 6×6 matrices: relative error far below this, at any power used.
+constexpr double power_error = 1e-11;
+
+/// The distinct numbers in Σ w BᵀkB over sides, B = [s 1, a n×]: with e = w(kn − kt), f = s w kt a, h = w kt a²
+/// they are Σ e nnᵀ (xx yy zz yz xz xy), Σ w kt, Σ f n and Σ h nnᵀ; n×(1 − nnᵀ)n× = −(1 − nnᵀ) gives the rest.
+struct alignas(64) Sums {
+  Double8 first{};   ///< Σ e nnᵀ, Σ w kt, Σ f x
+  Double8 second{};  ///< Σ h nnᵀ, Σ f y, Σ f z
+};
+
+EG_INLINE void add_side(Sums& sums, const Spring& s, const Side& side, double w) {
+  double e = w * (s.normal - s.tangential), g = w * s.tangential, f, h;
+  if (side.own_image) {  // both ends move alike: only the turning is left
+    const double arm = s.arm_i + s.arm_j;
+    h = g * arm * arm;
+    e = g = f = 0;
+  } else {
+    const bool first = side.matrix == ContactSide::first;
+    const double arm = first ? s.arm_i : s.arm_j;
+    f = first ? -g * arm : g * arm;
+    h = g * arm * arm;
+  }
+  const Double4 n{s.n.x, s.n.y, s.n.z, 1};
+  const Double8 left = __builtin_shufflevector(n, n, 0, 1, 2, 1, 0, 0, 3, 0);
+  const Double8 right = __builtin_shufflevector(n, n, 0, 1, 2, 2, 2, 1, 3, 3);
+  const Double8 products = left * right;  // xx yy zz yz xz xy 1 x
+  const Double8 tail = __builtin_shufflevector(n, n, 0, 0, 0, 0, 0, 0, 1, 2);
+  sums.first += products * Double8{e, e, e, e, e, e, g, f};
+  sums.second += __builtin_shufflevector(products, tail, 0, 1, 2, 3, 4, 5, 14, 15) * Double8{h, h, h, h, h, h, f, f};
+}
+
+EG_INLINE Sums sum_sides(const Sides& sides, std::span<const double> t, Index grain) {
+  Sums sums;
+  for (const Side& side : sides.of(grain)) {
+    double w = 1;
+    if (!t.empty() && side.role != Side::Role::alone)
+      w += side.role == Side::Role::first ? t[side.spring] : 1 / t[side.spring];
+    add_side(sums, sides.network().springs[side.spring], side, w);
+  }
+  return sums;
+}
+
+/// The lower triangle of a symmetric 6×6 matrix, for eight grains at once.
+struct Triangle {
+  std::array<Batch, 21> a;
+  static constexpr std::size_t at(std::size_t r, std::size_t c) { return r >= c ? r * (r + 1) / 2 + c : at(c, r); }
+  EG_INLINE Batch& operator()(std::size_t r, std::size_t c) { return a[at(r, c)]; }
+  EG_INLINE const Batch& operator()(std::size_t r, std::size_t c) const { return a[at(r, c)]; }
+
+  EG_INLINE Batch trace() const { return ((a[0] + a[2]) + (a[5] + a[9])) + (a[14] + a[20]); }
+};
+
+EG_INLINE Batch trace_of_product(const Triangle& x, const Triangle& y) {
+  Batch diagonal(0.0), rest(0.0);
+  for (std::size_t r = 0; r < 6; ++r) {
+    diagonal = diagonal + x(r, r) * y(r, r);
+    for (std::size_t c = 0; c < r; ++c) rest = rest + x(r, c) * y(r, c);
+  }
+  return diagonal + rest + rest;
+}
+
+/// Divides by the trace, which it returns.
+EG_INLINE Batch normalise(Triangle& x) {
+  const Batch trace = x.trace(), inverse = select(trace > Batch(0.0), Batch(1.0) / trace, Batch(0.0));
+  for (Batch& value : x.a) value = value * inverse;
+  return trace;
+}
+
+/// Entry (r, c) of x²; unrolled here, since g++ leaves loops over six as loops.
+template <std::size_t r, std::size_t c, std::size_t... k>
+EG_INLINE Batch square_entry(const Triangle& x, std::index_sequence<k...>) {
+  return ((x.a[Triangle::at(r, k)] * x.a[Triangle::at(k, c)]) + ...);
+}
+template <std::size_t r, std::size_t... c>
+EG_INLINE void square_row(const Triangle& x, Triangle& y, std::index_sequence<c...>) {
+  ((y.a[Triangle::at(r, c)] = square_entry<r, c>(x, std::make_index_sequence<6>())), ...);
+}
+template <std::size_t... r>
+EG_INLINE Triangle square(const Triangle& x, std::index_sequence<r...>) {
+  Triangle y;
+  (square_row<r>(x, y, std::make_index_sequence<r + 1>()), ...);
+  return y;
+}
+EG_INLINE Triangle square(const Triangle& x) { return square(x, std::make_index_sequence<6>()); }
+
+/// M^−½ (…) M^−½ from the sums and the scales of eight grains.
+EG_INLINE Triangle scaled_blocks(const std::array<Batch, 16>& s, const std::array<Batch, 6>& d) {
+  Triangle x;
+  const Batch fx = s[7], fy = s[14], fz = s[15], turn = s[8] + s[9] + s[10];
+  for (std::size_t r = 0; r < 3; ++r)
+    for (std::size_t c = 0; c <= r; ++c) {
+      const std::size_t place = r == c ? r : 6 - r - c;  // xx yy zz yz xz xy
+      const Batch e = s[place], h = s[8 + place];
+      x(r, c) = d[r] * d[c] * (r == c ? e + s[6] : e);
+      x(3 + r, 3 + c) = d[3 + r] * d[3 + c] * (r == c ? turn - h : -h);
+    }
+  const Batch zero(0.0);
+  const Batch cross[3][3] = {{zero, -fz, fy}, {fz, zero, -fx}, {-fy, fx, zero}};
+  for (std::size_t r = 0; r < 3; ++r)
+    for (std::size_t c = 0; c < 3; ++c) x(3 + c, r) = d[r] * d[3 + c] * cross[r][c];
+  return x;
+}
+
+struct Range {
+  Batch low, high;
+};
+
+EG_INLINE Range range_of(Triangle block) {
+  const Batch scale = normalise(block);
+  Triangle power = block;
+  Batch trace[4];
+  for (Batch& each : trace) {
+    power = square(power);
+    each = normalise(power);
+  }
+  const Batch low = scale * trace_of_product(power, block);
+  const Batch last = trace_of_product(power, power);
+  const Batch root = sqrt(trace[0] * sqrt(trace[1] * sqrt(trace[2] * sqrt(trace[3] * sqrt(last)))));
+  return {low, scale * root * Batch(1 + power_error)};
+}
+
+EG_INLINE void eight_ranges(const Sides& sides, std::span<const double> t, std::span<const Index> grains,
+                            BlockRanges& ranges) {
+  std::array<Sums, 8> sums;
+  std::array<std::array<double, 8>, 6> scale{};
+  for (std::size_t k = 0; k < grains.size(); ++k) {
+    sums[k] = sum_sides(sides, t, grains[k]);
+    const auto d = sides.scale(grains[k]);
+    for (int c = 0; c < 6; ++c) scale[static_cast<std::size_t>(c)][k] = d(c);
+  }
+  std::array<Batch, 16> s;
+  const auto* quads = reinterpret_cast<const Double4*>(sums.data());
+  for (std::size_t q = 0; q < 4; ++q) {
+    const auto row = [&](std::size_t k) { return quads[4 * k + q]; };
+    const auto columns = transpose_rows(row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7));
+    s[4 * q] = columns.x, s[4 * q + 1] = columns.y, s[4 * q + 2] = columns.z, s[4 * q + 3] = columns.w;
+  }
+  std::array<Batch, 6> d;
+  for (std::size_t c = 0; c < 6; ++c) d[c] = load_lanes(scale[c].data());
+  const Range range = range_of(scaled_blocks(s, d));
+  for (std::size_t k = 0; k < grains.size(); ++k) {
+    const double terms = static_cast<double>(sides.of(grains[k]).size());
+    ranges.low[grains[k]] = range.low[k];
+    ranges.high[grains[k]] = range.high[k] * (1 + 8 * terms * std::numeric_limits<double>::epsilon());
+  }
+}
+
+}  // namespace
+
+void block_ranges(const Sides& sides, std::span<const double> t, std::span<const Index> grains, BlockRanges& ranges) {
+  const auto groups = static_cast<std::ptrdiff_t>((grains.size() + 7) / 8);
+#pragma omp parallel for schedule(static) if (groups > 256)
+  for (std::ptrdiff_t group = 0; group < groups; ++group) {
+    const std::size_t first = 8 * static_cast<std::size_t>(group);
+    eight_ranges(sides, t, grains.subspan(first, std::min<std::size_t>(8, grains.size() - first)), ranges);
+  }
+}
+
+}  // namespace eg

@@ -1,0 +1,98 @@
+#include "timestep/scalar_weights.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace eg {
+namespace {
+
+constexpr double widest = 1096.6;  // e⁷: beyond it a contact is one-sided anyway
+
+/// t ← t λ_j / λ_i
+void even_out(const Spring& s, const std::vector<double>& lambda, double& t) {
+  const double next = t * (lambda[s.j] / lambda[s.i]);
+  if (std::isfinite(next)) t = std::clamp(next, 1 / widest, widest);
+}
+
+/// The contacts of hot grains, and all grains that these touch. Only grows.
+class HotSet {
+ public:
+  explicit HotSet(const Sides& sides) : sides_(sides), mark_(sides.size(), 0) {}
+
+  /// Grains not proved below `known` are hot; looks at those listed in `from`.
+  void add(const BlockRanges& ranges, double known, const std::vector<Index>& from) {
+    std::vector<Index> fresh;
+    for (const Index g : from)
+      if (mark_[g] != hot && ranges.high[g] >= known && known > 0) fresh.push_back(g);
+    for (const Index g : fresh) heat(g);
+  }
+  std::vector<Index> springs, grains;
+
+ private:
+  enum : char { cold, neighbour, hot };
+
+  void heat(Index g) {
+    if (mark_[g] == cold) grains.push_back(g);
+    mark_[g] = hot;
+    for (const Side& side : sides_.of(g)) {
+      if (side.role == Side::Role::alone) continue;
+      const Spring& s = sides_.network().springs[side.spring];
+      const Index other = s.i == g ? s.j : s.i;
+      if (mark_[other] != hot) springs.push_back(side.spring);
+      if (mark_[other] == cold) mark_[other] = neighbour, grains.push_back(other);
+    }
+  }
+
+  const Sides& sides_;
+  std::vector<char> mark_;
+};
+
+double largest(const std::vector<double>& values, const std::vector<Index>& grains) {
+  double maximum = 0;
+  for (const Index g : grains) maximum = std::max(maximum, values[g]);
+  return maximum;
+}
+
+/// Sweeps over the hot set, which takes in what the sweeps heat up; leaves the best weights met and their ranges.
+void sweep_hot(const Sides& sides, const ScalarSweepOptions& options, HotSet& set, ScalarWeights& weights) {
+  const auto& springs = sides.network().springs;
+  std::vector<double> best;
+  double least = INFINITY;
+  for (int idle = 0;; ++weights.sweeps) {
+    const double now = largest(weights.ranges.low, set.grains);
+    idle = now < least * (1 - 1e-3) ? 0 : idle + 1;
+    set.add(weights.ranges, weights.known, std::vector(set.grains));
+    const std::size_t kept = now < least ? 0 : best.size();
+    best.resize(set.springs.size());
+    for (std::size_t k = kept; k < best.size(); ++k) best[k] = weights.t[set.springs[k]];
+    least = std::min(least, now);
+    if (weights.sweeps >= options.most || idle > 4 || least <= options.target) break;
+    for (const Index c : set.springs) even_out(springs[c], weights.ranges.low, weights.t[c]);
+    block_ranges(sides, weights.t, set.grains, weights.ranges);
+  }
+  for (std::size_t k = 0; k < best.size(); ++k) weights.t[set.springs[k]] = best[k];
+  block_ranges(sides, weights.t, set.grains, weights.ranges);
+}
+
+}  // namespace
+
+ScalarWeights sweep_scalars(const Sides& sides, const ScalarSweepOptions& options) {
+  const auto& springs = sides.network().springs;
+  ScalarWeights weights{std::vector(springs.size(), 1.0), BlockRanges(sides.size()), 0, 0};
+  std::vector<Index> all(sides.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  block_ranges(sides, {}, all, weights.ranges);
+  weights.known = largest(weights.ranges.low, all) * (1 - 1e-12);
+  if (options.most > 0)
+    for (std::size_t c = 0; c < springs.size(); ++c)
+      if (sides.is_split(c)) even_out(springs[c], weights.ranges.low, weights.t[c]);
+  block_ranges(sides, weights.t, all, weights.ranges);
+  weights.sweeps = std::min(options.most, 1);
+  HotSet set(sides);
+  set.add(weights.ranges, weights.known, all);
+  sweep_hot(sides, options, set, weights);
+  return weights;
+}
+
+}  // namespace eg
