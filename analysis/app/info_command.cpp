@@ -28,7 +28,7 @@ struct ArraySize {
 };
 
 template <class T>
-std::size_t bytes_of(const std::vector<T>& v) { return v.size() * sizeof(T); }
+std::size_t bytes_of(const T& v) { return v.size() * sizeof(typename T::value_type); }
 
 std::vector<ArraySize> arrays_of(const State& s, const ForceWorkspace& w) {
   return {{"position and radius", bytes_of(s.grains.position), false}, {"velocity and mass", bytes_of(s.grains.velocity), false},

@@ -22,22 +22,21 @@ TangentBlock tangent(const ContactPoint& p, const State& state,
   const bool wall = p.j == no_index;
   const Vec<D12> ui = variable({}, 0), ti = variable({}, 3);
   const Vec<D12> uj = wall ? Vec<D12>{} : variable({}, 6), tj = wall ? Vec<D12>{} : variable({}, 9);
-  const D12 ri(grains.radius(p.i)), rj(wall ? INFINITY : grains.radius(p.j));
+  const D12 ri(grains.radius(p.i)), rj(wall ? 0.0 : grains.radius(p.j));
   Geometry<D12> g;
   if (wall) {
     const Wall& w = state.walls[p.wall];
     g = grain_plane<D12>(dot(constant(grains.position[p.i].vec() - w.point) + ui, constant(w.normal)),
                          constant(w.normal), ri, arms);
   } else {
-    g = grain_grain<D12>(constant(p.branch) + uj - ui, ri, rj, arms);
+    g = grain_grain<D12>(constant(p.branch) + uj - ui, ri, ri + rj, arms);
   }
-  const auto inc = increment<true>(g, Motion<D12>{uj - ui, ti, tj});
+  const auto inc = increment<true>(g, motion_of<D12>(uj - ui, ti, ri, tj, rj));
   ContactHistory<Law, D12> history;
   for (std::size_t h = 0; h < history.size(); ++h)
     history[h] = wall ? D12(state.wall_contacts[p.entry].history[h]) : D12(state.contacts.history_at(p.entry, h));
-  const auto c = gather_struct<typename Law::template Constants<D12>, typename Law::template Constants<double>, D12>(
-      &constants, true, [](std::size_t) { return std::size_t{0}; });
-  const auto f = interact<Law, false>(Law::template pair<D12>(c, ri, rj), g, inc, true, history, Dashpot<D12>{});
+  const auto c = broadcast_struct<typename Law::template Constants<D12>, D12>(constants);
+  const auto f = interact<Law, false>(Law::template pair<D12>(c, wall ? wall_sizes(ri) : grain_sizes(ri, rj)), g, inc, true, history, Dashpot<D12>{});
 
   const Vec<D12> on_i = -f.on_j, moment_i = f.moment * g.arm_i, moment_j = f.moment * g.arm_j;
   TangentBlock block{p.i, p.j, {}};

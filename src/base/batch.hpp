@@ -85,6 +85,33 @@ EG_INLINE Batch sqrt(Batch a) {
   return r;
 #endif
 }
+/// 1/√a and 1/a to about an ulp: on AVX-512 a 14-bit guess and two Newton steps, several times faster than √ and ÷.
+/// a must be a normal number > 0.
+EG_INLINE Batch rsqrt(Batch a) {
+#if defined(__AVX512F__)
+  Double8 y = _mm512_maskz_rsqrt14_pd(0xff, a.v);
+  const Double8 half = 0.5 * a.v;
+  for (int k = 0; k < 2; ++k) {
+    const Double8 e = 0.5 - half * y * y;  // y ← y (1 + e + 3/2 e²)
+    y += y * (e + 1.5 * e * e);
+  }
+  return y;
+#else
+  return Batch(1.0) / sqrt(a);
+#endif
+}
+EG_INLINE Batch reciprocal(Batch a) {
+#if defined(__AVX512F__)
+  Double8 y = _mm512_maskz_rcp14_pd(0xff, a.v);
+  for (int k = 0; k < 2; ++k) {
+    const Double8 e = 1.0 - a.v * y;
+    y += y * (e + e * e);
+  }
+  return y;
+#else
+  return Batch(1.0) / a;
+#endif
+}
 /// Sum over lanes in a fixed order.
 EG_INLINE double sum(Batch a) {
   return ((a.v[0] + a.v[1]) + (a.v[2] + a.v[3])) + ((a.v[4] + a.v[5]) + (a.v[6] + a.v[7]));

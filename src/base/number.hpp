@@ -22,6 +22,21 @@ EG_INLINE S min(const S& a, const S& b) {
   return select(b < a, b, a);
 }
 using std::sqrt;
+template <class S>
+EG_INLINE S rsqrt(const S& a) {
+  return S(1.0) / sqrt(a);
+}
+template <class S>
+EG_INLINE S reciprocal(const S& a) {
+  return S(1.0) / a;
+}
+
+/// √a for a ≥ 0, through rsqrt.
+EG_INLINE Batch root(Batch a) { return a * rsqrt(max(a, Batch(1e-300))); }
+template <class S>
+EG_INLINE S root(const S& a) {
+  return sqrt(a);
+}
 
 template <class S>
 inline constexpr std::size_t lanes_of = 1;

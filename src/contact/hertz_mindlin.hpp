@@ -32,13 +32,13 @@ struct HertzMindlinLaw {
   }
 
   template <class S>
-  EG_INLINE static Pair<S> pair(const Constants<S>& c, const S& ri, const S& rj) {
-    return {c.e_star, c.g_star, ri / (S(1.0) + ri / rj), c.friction};
+  EG_INLINE static Pair<S> pair(const Constants<S>& c, const Sizes<S>& sizes) {
+    return {c.e_star, c.g_star, sizes.r_star, c.friction};
   }
 
   template <class S>
   EG_INLINE static NormalResponse<S> normal(const Pair<S>& p, const S& overlap) {
-    const S a = sqrt(p.r_star * overlap);
+    const S a = root(p.r_star * overlap);
     const S ea = p.e_star * a;
     return {S(4.0 / 3.0) * ea * overlap, S(2.0) * ea, S(8.0) * p.g_star * a};
   }

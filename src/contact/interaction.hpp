@@ -8,23 +8,25 @@ namespace eg {
 
 template <class S>
 struct Geometry {
-  Vec<S> n;        ///< unit, from i to j
-  S overlap;       ///< δ [m], > 0 when touching
-  S arm_i, arm_j;  ///< distance of the contact point from each centre [m]
+  Vec<S> n;          ///< unit, from i to j
+  S overlap;         ///< δ [m], > 0 when touching
+  S shorten;         ///< how far inside the surface the contact point lies [m]
+  S arm_i, arm_j;    ///< distance of the contact point from each centre, R − shorten [m]
 };
 
 /// How far along the branch the contact point lies. `middle`: the middle of the overlap, a = R − δ/2, so that the arms
 /// sum to the branch length and rigid rotation moves no contact. `surface`: a = R, as the gran/* styles of LAMMPS.
 enum class Arms { middle, surface };
 
-/// `branch`: x_j − x_i [m]. Two grains at one point have n = 0, so no force direction; the caller's checks catch that.
+/// `branch`: x_j − x_i [m]; `sum` = R_i + R_j. Two grains at one point have n = 0, so no force direction; the caller's
+/// checks catch that.
 template <class S>
-EG_INLINE Geometry<S> grain_grain(const Vec<S>& branch, const S& ri, const S& rj, Arms arms) {
-  const S d2 = dot(branch, branch);
-  const S distance = sqrt(max(d2, S(1e-300)));
-  const S overlap = ri + rj - distance;
+EG_INLINE Geometry<S> grain_grain(const Vec<S>& branch, const S& ri, const S& sum, Arms arms) {
+  const S d2 = max(dot(branch, branch), S(1e-300));
+  const S inverse = rsqrt(d2);
+  const S overlap = sum - d2 * inverse;
   const S shorten = arms == Arms::middle ? S(0.5) * overlap : S(0.0);
-  return {branch * (S(1.0) / distance), overlap, ri - shorten, rj - shorten};
+  return {branch * inverse, overlap, shorten, ri - shorten, sum - ri - shorten};
 }
 
 /// `height`: signed distance of the centre from the plane [m]; `inward`: the plane's normal, pointing to the grains.
@@ -32,15 +34,25 @@ template <class S>
 EG_INLINE Geometry<S> grain_plane(const S& height, const Vec<S>& inward, const S& radius, Arms arms) {
   const S overlap = radius - height;
   const S shorten = arms == Arms::middle ? S(0.5) * overlap : S(0.0);
-  return {-inward, overlap, radius - shorten, S(0.0)};
+  return {-inward, overlap, shorten, radius - shorten, S(0.0)};
 }
 
 /// Motion of both sides during the last increment.
 template <class S>
 struct Motion {
-  Vec<S> translation;             ///< u_j − u_i [m], with the affine part of a deforming cell
-  Vec<S> rotation_i, rotation_j;  ///< θ [rad]
+  Vec<S> translation;  ///< u_j − u_i [m], with the affine part of a deforming cell
+  Vec<S> turn;         ///< θ_i + θ_j [rad]
+  Vec<S> roll;         ///< R_i θ_i + R_j θ_j [m]
 };
+template <class S>
+EG_INLINE Motion<S> motion_of(const Vec<S>& translation, const Vec<S>& ti, const S& ri, const Vec<S>& tj, const S& rj) {
+  return {translation, ti + tj, ti * ri + tj * rj};
+}
+/// Against a wall, which does not turn: translation is the wall's minus the grain's.
+template <class S>
+EG_INLINE Motion<S> wall_motion(const Vec<S>& translation, const Vec<S>& turn, const S& radius) {
+  return {translation, turn, turn * radius};
+}
 
 template <class S>
 struct Increment {
@@ -49,14 +61,14 @@ struct Increment {
   S twist;      ///< mean rotation of both sides about n [rad]
 };
 
-/// Δ = u_j − u_i − (a_i θ_i + a_j θ_j) × n, split along and across n.
+/// Δ = u_j − u_i − (a_i θ_i + a_j θ_j) × n with a = R − shorten, split along and across n.
 template <bool rotation, class S>
 EG_INLINE Increment<S> increment(const Geometry<S>& g, const Motion<S>& m) {
   const S along = dot(m.translation, g.n);
   Vec<S> slip = m.translation - g.n * along;
   if constexpr (rotation) {
-    slip -= cross(m.rotation_i * g.arm_i + m.rotation_j * g.arm_j, g.n);
-    return {-along, slip, S(0.5) * dot(m.rotation_i + m.rotation_j, g.n)};
+    slip -= cross(m.roll - m.turn * g.shorten, g.n);
+    return {-along, slip, S(0.5) * dot(m.turn, g.n)};
   } else {
     return {-along, slip, S(0.0)};
   }
@@ -69,7 +81,7 @@ EG_INLINE Vec<S> turn(const Vec<S>& old, const Vec<S>& n, const S& twist) {
   Vec<S> turned = old - n * out;
   turned += cross(n, turned) * twist;
   const S before = dot(old, old), after = dot(turned, turned);
-  return turned * select(after > S(0.0), sqrt(before / max(after, S(1e-300))), S(0.0));
+  return turned * (before * rsqrt(max(before * after, S(1e-300))));
 }
 
 /// Contact dashpots: ratio ξ of critical damping of the pair, 2ξ√(m* k); zero is off.

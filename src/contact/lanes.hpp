@@ -13,37 +13,87 @@ struct Columns {
 
 EG_INLINE Double4 quad_vector(const Quad& q) { return *reinterpret_cast<const Double4*>(&q); }
 
-/// Rows index[0…lanes) of an array of quads, plus rows of a second table when given (image translations).
+/// Combines rows of both sides of a contact before they are transposed, which is what costs.
+/// Differences (j + shift[image] − i) of x, y, z and the sum of w.
 template <class S>
-EG_INLINE Columns<S> load_quads(const Quad* rows, const Index* index, const Quad* add = nullptr,
-                                const std::uint8_t* add_index = nullptr) {
+EG_INLINE Columns<S> load_difference(const Quad* rows, const Index* i, const Index* j, const Quad* shift = nullptr,
+                                     const std::uint8_t* image = nullptr) {
   if constexpr (lanes_of<S> == 1) {
-    const Quad& q = rows[index[0]];
-    if (!add) return {q.x, q.y, q.z, q.w};
-    const Quad& a = add[add_index[0]];
-    return {q.x + a.x, q.y + a.y, q.z + a.z, q.w};
+    const Quad &a = rows[i[0]], &b = rows[j[0]];
+    const Vec3 d = (shift ? b.vec() + shift[image[0]].vec() : b.vec()) - a.vec();
+    return {d.x, d.y, d.z, b.w + a.w};
   } else {
+    const Double4 sign{-1, -1, -1, 1};
     const auto row = [&](std::size_t k) {
-      const Double4 q = quad_vector(rows[index[k]]);
-      return add ? q + quad_vector(add[add_index[k]]) : q;
+      const Double4 a = quad_vector(rows[i[k]]), b = quad_vector(rows[j[k]]);
+      return (shift ? b + quad_vector(shift[image[k]]) : b) + sign * a;
     };
     const auto c = transpose_rows(row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7));
     return {c.x, c.y, c.z, c.w};
   }
 }
 
-/// rows[index[k]·stride + offset] += column values of lane k, lane after lane.
+/// weight_i · row i + weight_j · row j, the weights being the w of another array (radii); w is meaningless.
 template <class S>
-EG_INLINE void add_quads(Quad* rows, const Index* index, std::size_t stride, std::size_t offset, const Columns<S>& v) {
+EG_INLINE Columns<S> load_weighted_sum(const Quad* rows, const Quad* weights, const Index* i, const Index* j) {
   if constexpr (lanes_of<S> == 1) {
-    Quad& q = rows[index[0] * stride + offset];
-    q.x += v.x, q.y += v.y, q.z += v.z, q.w += v.w;
+    const Vec3 v = rows[i[0]].vec() * weights[i[0]].w + rows[j[0]].vec() * weights[j[0]].w;
+    return {v.x, v.y, v.z, 0.0};
   } else {
-    Double4 r[8];
-    transpose_columns({v.x, v.y, v.z, v.w}, r);
-    for (std::size_t k = 0; k < 8; ++k) {
-      auto& q = *reinterpret_cast<Double4*>(rows + index[k] * stride + offset);
-      q += r[k];
+    const auto row = [&](std::size_t k) {
+      return quad_vector(rows[i[k]]) * weights[i[k]].w + quad_vector(rows[j[k]]) * weights[j[k]].w;
+    };
+    const auto c = transpose_rows(row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7));
+    return {c.x, c.y, c.z, c.w};
+  }
+}
+
+/// row i + row j; w is meaningless.
+template <class S>
+EG_INLINE Columns<S> load_sum(const Quad* rows, const Index* i, const Index* j) {
+  if constexpr (lanes_of<S> == 1) {
+    const Vec3 v = rows[i[0]].vec() + rows[j[0]].vec();
+    return {v.x, v.y, v.z, 0.0};
+  } else {
+    const auto row = [&](std::size_t k) { return quad_vector(rows[i[k]]) + quad_vector(rows[j[k]]); };
+    const auto c = transpose_rows(row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7));
+    return {c.x, c.y, c.z, c.w};
+  }
+}
+
+/// w of rows index[0…lanes).
+template <class S>
+EG_INLINE S load_w(const Quad* rows, const Index* index) {
+  if constexpr (lanes_of<S> == 1) {
+    return rows[index[0]].w;
+  } else {
+    const auto w = [&](std::size_t k) { return rows[index[k]].w; };
+    return Double8{w(0), w(1), w(2), w(3), w(4), w(5), w(6), w(7)};
+  }
+}
+
+/// Adds a contact to the accumulators of both sides: −f to i and f to j, with the moment times each arm behind it when
+/// `stride` is 2. Lane after lane, so that one grain may stand in several.
+template <std::size_t stride, class S>
+EG_INLINE void add_contact(Quad* rows, const Index* i, const Index* j, const Vec<S>& f, const Vec<S>& moment,
+                           const S& arm_i, const S& arm_j) {
+  if constexpr (lanes_of<S> == 1) {
+    const auto add = [](Quad& q, const Vec3& v) { q.set(q.vec() + v); };
+    add(rows[stride * i[0]], -f), add(rows[stride * j[0]], f);
+    if constexpr (stride == 2) add(rows[2 * i[0] + 1], moment * arm_i), add(rows[2 * j[0] + 1], moment * arm_j);
+  } else {
+    Double4 force[8];
+    transpose_columns({f.x, f.y, f.z, Batch(0.0)}, force);
+    const auto at = [rows](std::size_t k) -> Double4& { return *reinterpret_cast<Double4*>(rows + k); };
+    if constexpr (stride == 2) {
+      Double4 turn[8];
+      transpose_columns({moment.x, moment.y, moment.z, Batch(0.0)}, turn);
+      for (std::size_t k = 0; k < 8; ++k) {
+        at(2 * i[k]) -= force[k], at(2 * i[k] + 1) += turn[k] * arm_i[k];
+        at(2 * j[k]) += force[k], at(2 * j[k] + 1) += turn[k] * arm_j[k];
+      }
+    } else {
+      for (std::size_t k = 0; k < 8; ++k) at(i[k]) -= force[k], at(j[k]) += force[k];
     }
   }
 }
@@ -68,26 +118,31 @@ EG_INLINE void store_values(double* p, const S& v) {
     store_lanes(p, v);
 }
 
-/// A struct of doubles (a law's Constants) as the same struct of S: all lanes alike, or lane k taken from
-/// table[pick(k)].
-template <class To, class From, class S, class Pick>
-EG_INLINE To gather_struct(const From* table, bool uniform, Pick&& pick) {
+/// A struct of doubles (a law's Constants) as the same struct of S: all lanes alike …
+template <class To, class S, class From>
+EG_INLINE To broadcast_struct(const From& one) {
   constexpr std::size_t n = sizeof(From) / sizeof(double);
   static_assert(sizeof(To) == n * sizeof(S));
+  const auto values = std::bit_cast<std::array<double, n>>(one);
   std::array<S, n> out;
-  if (uniform) {
-    const auto first = std::bit_cast<std::array<double, n>>(*table);
-    for (std::size_t m = 0; m < n; ++m) out[m] = S(first[m]);
-  } else if constexpr (lanes_of<S> == 1) {
-    const auto one = std::bit_cast<std::array<double, n>>(table[pick(0)]);
-    for (std::size_t m = 0; m < n; ++m) out[m] = one[m];
+  for (std::size_t m = 0; m < n; ++m) out[m] = S(values[m]);
+  return std::bit_cast<To>(out);
+}
+
+/// … or lane k from table[pick(k)].
+template <class To, class S, class From, class Pick>
+EG_INLINE To gather_struct(const From* table, Pick&& pick) {
+  if constexpr (lanes_of<S> == 1) {
+    return broadcast_struct<To, S>(table[pick(0)]);
   } else {
+    constexpr std::size_t n = sizeof(From) / sizeof(double);
+    std::array<S, n> out;
     for (std::size_t k = 0; k < lanes_of<S>; ++k) {
       const auto one = std::bit_cast<std::array<double, n>>(table[pick(k)]);
       for (std::size_t m = 0; m < n; ++m) out[m].v[k] = one[m];
     }
+    return std::bit_cast<To>(out);
   }
-  return std::bit_cast<To>(out);
 }
 
 }  // namespace eg

@@ -16,6 +16,23 @@ struct Strain {
   Vec<S> slip;  ///< Δs [m], increment of the tangential displacement of j against i
 };
 
+/// What a law may know of the two bodies' sizes.
+template <class S>
+struct Sizes {
+  S r_star;   ///< R* = R1 R2/(R1 + R2) [m]; against a wall R
+  S smaller;  ///< min(R1, R2) [m]; against a wall R
+  S length;   ///< L = R1 + R2 [m]; against a wall R
+};
+template <class S>
+EG_INLINE Sizes<S> grain_sizes(const S& ri, const S& rj) {
+  const S sum = ri + rj;
+  return {ri * rj * reciprocal(sum), min(ri, rj), sum};
+}
+template <class S>
+EG_INLINE Sizes<S> wall_sizes(const S& r) {
+  return {r, r, r};
+}
+
 /// Response normal to the contact plane.
 template <class S>
 struct NormalResponse {
@@ -36,7 +53,7 @@ struct Response {
 /// - name, history_vectors (3-vectors in the contact plane that turn with it, the first one the shear force T) and
 ///   history_scalars; history is stored in this order;
 /// - Constants<S>: what two materials give, all of type S, independent of radii; constants(a, b, dimension) makes them;
-/// - Pair<S>: constants of one contact, made of Constants and radii (a wall has radius infinity);
+/// - Pair<S>: constants of one contact, made of Constants and Sizes;
 /// - normal(pair, overlap) for overlap ≥ 0, zero force at 0;
 /// - normal_energy(pair, overlap): the work of N from 0 to overlap [J];
 /// - respond(pair, strain, history): new forces; history goes in and comes out.
@@ -46,7 +63,7 @@ concept ContactLaw = requires(const Material& m, const typename L::template Cons
                               std::array<double, L::history_vectors * 3 + L::history_scalars>& h) {
   { L::name } -> std::convertible_to<std::string_view>;
   { L::constants(m, m, 3) } -> std::same_as<typename L::template Constants<double>>;
-  { L::template pair<double>(c, x, x) } -> std::same_as<typename L::template Pair<double>>;
+  { L::template pair<double>(c, Sizes<double>{x, x, x}) } -> std::same_as<typename L::template Pair<double>>;
   { L::template normal<double>(p, x) } -> std::same_as<NormalResponse<double>>;
   { L::normal_energy(p, x) } -> std::same_as<double>;
   { L::template respond<double>(p, s, h) } -> std::same_as<Response<double>>;
@@ -72,7 +89,7 @@ EG_INLINE Vec<S> coulomb(const Vec<S>& trial, const S& limit) {
   const S t2 = dot(trial, trial);
   const auto slides = t2 > limit * limit;
   if (!any(slides)) return trial;
-  return trial * select(slides, limit / sqrt(t2), S(1.0));
+  return trial * select(slides, limit * rsqrt(max(t2, S(1e-300))), S(1.0));
 }
 
 /// The law without friction: no shear, no history, no tangential stiffness.
@@ -86,8 +103,8 @@ struct Frictionless {
   using Pair = typename Law::template Pair<S>;
   static auto constants(const Material& a, const Material& b, int dimension) { return Law::constants(a, b, dimension); }
   template <class S>
-  EG_INLINE static Pair<S> pair(const Constants<S>& c, const S& ri, const S& rj) {
-    return Law::template pair<S>(c, ri, rj);
+  EG_INLINE static Pair<S> pair(const Constants<S>& c, const Sizes<S>& sizes) {
+    return Law::template pair<S>(c, sizes);
   }
   template <class S>
   EG_INLINE static NormalResponse<S> normal(const Pair<S>& p, const S& overlap) {

@@ -40,10 +40,8 @@ struct Linear {
   }
 
   template <class S>
-  EG_INLINE static Pair<S> pair(const Constants<S>& c, const S& ri, const S& rj) {
-    const S r = min(ri, rj);
-    const S length = select(rj > S(1e300), ri, ri + rj);
-    const S kn = c.kn + (c.volume * r + c.area) * r / length;
+  EG_INLINE static Pair<S> pair(const Constants<S>& c, const Sizes<S>& sizes) {
+    const S kn = c.kn + (c.volume * sizes.smaller + c.area) * sizes.smaller * reciprocal(sizes.length);
     return {kn, kn * c.ks_over_kn, c.friction};
   }
 

@@ -16,7 +16,7 @@ Engine::Engine(const Scene& scene, State& state, bool scalar) : scene_(scene), s
   loop_ = make_force_loop(scene.contact.law, frictionless, state_.grains.rotates());
   loop_->set_materials(scene.materials, state_.friction, scene.dimension);
   const bool viscous = scene.energy && (scene.damping.normal_ratio > 0 || scene.damping.shear_ratio > 0);
-  options_ = {arms_of(scene), scene.damping.normal_ratio, scene.damping.shear_ratio, true, viscous, scalar};
+  options_ = {arms_of(scene), scene.damping.normal_ratio, scene.damping.shear_ratio, TallyLevel::none, viscous, scalar};
   kick_ = {scene.damping.local, scene.damping.mass, scene.gravity, scene.dimension};
   last_dt_ = state_.dt;
   if (!state_.list.begin.empty()) {  // resumed
@@ -29,48 +29,48 @@ Engine::Engine(const Scene& scene, State& state, bool scalar) : scene_(scene), s
   const auto [skin, contact_skin] = default_skins(state_);
   rebuild_neighbours(state_, skin, contact_skin);
   refresh_workspace();
-  forces(0, true);
+  forces(0, TallyLevel::works);
 }
 
-void Engine::refresh_workspace() { prepare(work_, state_); }
+void Engine::refresh_workspace() { prepare(work_, state_, *loop_); }
 
 void Engine::set_friction(const std::vector<double>& friction) {
   state_.friction = friction;
   loop_->set_materials(scene_.materials, friction, scene_.dimension);
 }
 
-void Engine::forces(double dt, bool tally) {
-  options_.tally = tally;
+void Engine::forces(double dt, TallyLevel tally) {
+  options_.tally = level_ = tally;
   const Mat3 virial_before = state_.virial;
   double wall_power = 0;
   for (const auto& w : state_.walls) wall_power -= 0.5 * dot(w.force, w.velocity);
   Tally now = loop_->contacts(state_, work_, dt, options_);
   const Mat3 virial = now.virial;
   if (!state_.walls.empty()) now += loop_->walls(state_, work_, dt, options_);
-  if (!tally) return;
-  tally_ = now;
+  if (tally == TallyLevel::none) return;
+  if (tally == TallyLevel::works) tally_ = now;
   state_.virial = virial;
-  state_.stiffness_sum = tally_.stiffness_sum;
+  state_.stiffness_sum = now.stiffness_sum;
   auto& e = state_.ledger;
-  e.shear_work += tally_.shear_work, e.friction += tally_.friction, e.viscous_damping += tally_.viscous;
+  e.shear_work += now.shear_work, e.friction += now.friction, e.viscous_damping += now.viscous;
   for (std::size_t k = 0; k < 9; ++k)
     e.boundary -= 0.5 * (virial_before.a[k] + virial.a[k]) * state_.cell.rate.a[k] * dt;
   for (const auto& w : state_.walls) wall_power -= 0.5 * dot(w.force, w.velocity);
   e.boundary += wall_power * dt;
 }
 
-void Engine::move(bool tally) {
+void Engine::move(TallyLevel tally) {
   const double dt = state_.dt;
   const double displacement = drift(state_, dt);
   if (update_lists(state_, displacement)) refresh_workspace();
-  forces(dt, tally || scene_.energy);
+  forces(dt, scene_.energy ? TallyLevel::works : tally);
   last_dt_ = dt;
   state_.time += dt;
   ++state_.step;
 }
 
 void Engine::kick(double next_dt) {
-  sums_ = eg::kick(state_, work_, 0.5 * (last_dt_ + next_dt), kick_);
+  sums_ = eg::kick(state_, work_, 0.5 * (last_dt_ + next_dt), kick_, level_ == TallyLevel::works);
   auto& e = state_.ledger;
   e.local_damping += sums_.local_damping, e.mass_damping += sums_.mass_damping;
   e.body += sums_.body, e.boundary += sums_.affine;

@@ -14,12 +14,12 @@ class Engine {
   void set_friction(const std::vector<double>& friction);  ///< µ per material
   void set_local_damping(double alpha) { kick_.local = alpha; }
 
-  /// Drift over state.dt, lists, forces at the new time. `tally`: stress, works and force statistics wanted.
-  void move(bool tally);
+  /// Drift over state.dt, lists, forces at the new time. With an energy ledger everything is tallied at every step.
+  void move(TallyLevel tally);
   /// Kick to the next half step; the next drift will take next_dt [s]. Advances state.time's velocity only.
   void kick(double next_dt);
   /// Both, with one step length.
-  void step(double dt, bool tally = true) {
+  void step(double dt, TallyLevel tally = TallyLevel::works) {
     move(tally);
     kick(dt);
   }
@@ -31,7 +31,7 @@ class Engine {
   double unbalanced_ratio() const;
   /// Forces at the present positions after a motion of length dt (no drift, no list check): for tests and
   /// linearisation.
-  void forces(double dt, bool tally);
+  void forces(double dt, TallyLevel tally);
 
  private:
   void refresh_workspace();
@@ -44,6 +44,7 @@ class Engine {
   KickOptions kick_;
   Tally tally_;
   KickSums sums_;
+  TallyLevel level_ = TallyLevel::none;
   double last_dt_ = 0;
 };
 

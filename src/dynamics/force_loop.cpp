@@ -24,11 +24,23 @@ std::unique_ptr<ForceLoop> make_force_loop(std::string_view law, bool frictionle
   return loop;
 }
 
-void prepare(ForceWorkspace& work, const State& state) {
+void prepare(ForceWorkspace& work, const State& state, const ForceLoop& loop) {
   make_schedule(work.schedule, state.grains.size(), Contacts::chunk, state.contacts.j, state.contacts.chunk_begin);
-  work.rows.resize(work.schedule.rows());
+  work.stride = loop.has_moments() ? 2 : 1;
+  work.rows.resize(work.schedule.rows() * work.stride);
   work.tally.resize(work.schedule.chunks());
   work.shift.resize(Cell::images);
+}
+
+ForceRow gather_row(const ForceWorkspace& work, std::size_t i) {
+  ForceRow sum;
+  const auto add = [&](std::size_t row) {
+    sum.force += work.rows[row * work.stride].vec();
+    if (work.stride == 2) sum.moment += work.rows[2 * row + 1].vec();
+  };
+  add(i);
+  for (Index h = work.schedule.gather_begin[i]; h < work.schedule.gather_begin[i + 1]; ++h) add(work.schedule.gather_row[h]);
+  return sum;
 }
 
 }  // namespace eg

@@ -4,17 +4,13 @@
 #include <string_view>
 #include <vector>
 
+#include "base/aligned.hpp"
 #include "contact/interaction.hpp"
 #include "state/scene.hpp"
 #include "state/schedule.hpp"
 #include "state/state.hpp"
 
 namespace eg {
-
-/// Sum of contact forces and moments on one grain [N], [N m].
-struct alignas(64) ForceRow {
-  Quad force, moment;
-};
 
 /// What the loop adds up over all contacts when asked.
 struct Tally {
@@ -26,18 +22,23 @@ struct Tally {
   Tally& operator+=(const Tally& b);
 };
 
-/// Scratch of the force loop: accumulator rows (grains, then halo rows) and their schedule.
+/// Scratch of the force loop: accumulator rows (grains, then halo rows) and their schedule. A row is a force [N], and
+/// behind it a moment [N m] when grains turn.
 struct ForceWorkspace {
   Schedule schedule;
-  std::vector<ForceRow> rows;
-  std::vector<Tally> tally;  ///< a chunk
-  std::vector<Quad> shift;   ///< translation of each image
+  AlignedVector<Quad> rows;
+  std::size_t stride = 2;                 ///< quads a row: 2 with moments, else 1
+  std::vector<Tally> tally;               ///< a chunk
+  std::vector<Quad> shift;                ///< translation of each image
 };
+
+/// What the loop adds up: nothing, stress and stiffness, or works and force statistics too.
+enum class TallyLevel { none, stress, works };
 
 struct ForceOptions {
   Arms arms = Arms::middle;
   double normal_ratio = 0, shear_ratio = 0;  ///< contact dashpots, ξ
-  bool tally = false;                        ///< virial and works wanted
+  TallyLevel tally = TallyLevel::none;
   bool viscous_history = false;  ///< dashpot work wanted: three values behind the law's history keep their force
   bool scalar = false;           ///< the reference path: one contact at a time
 };
@@ -47,6 +48,7 @@ class ForceLoop {
   virtual ~ForceLoop() = default;
   virtual std::size_t history_size() const = 0;
   virtual std::size_t history_vectors() const = 0;
+  virtual bool has_moments() const = 0;
   /// Constants of all pairs of materials with these friction coefficients.
   virtual void set_materials(const std::vector<Material>& materials, const std::vector<double>& friction,
                              int dimension) = 0;
@@ -61,17 +63,14 @@ class ForceLoop {
 std::unique_ptr<ForceLoop> make_force_loop(std::string_view law, bool frictionless, bool rotation);
 
 /// Sets sizes of the workspace after the contact list changed.
-void prepare(ForceWorkspace& work, const State& state);
+void prepare(ForceWorkspace& work, const State& state, const ForceLoop& loop);
 
-/// Force on grain i: its own row plus its halo rows, in fixed order.
-inline ForceRow gather_row(const ForceWorkspace& work, std::size_t i) {
-  ForceRow r = work.rows[i];
-  for (Index h = work.schedule.gather_begin[i]; h < work.schedule.gather_begin[i + 1]; ++h) {
-    const ForceRow& o = work.rows[work.schedule.gather_row[h]];
-    r.force.x += o.force.x, r.force.y += o.force.y, r.force.z += o.force.z;
-    r.moment.x += o.moment.x, r.moment.y += o.moment.y, r.moment.z += o.moment.z;
-  }
-  return r;
-}
+/// Sum of contact forces and moments on one grain.
+struct ForceRow {
+  Vec3 force, moment;  ///< [N], [N m]
+};
+
+/// Of grain i: its own row plus its halo rows, in fixed order.
+ForceRow gather_row(const ForceWorkspace& work, std::size_t i);
 
 }  // namespace eg

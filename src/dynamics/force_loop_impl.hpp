@@ -14,6 +14,7 @@ class ForceLoopOf final : public ForceLoop {
 
   std::size_t history_size() const override { return eg::history_size<Law>; }
   std::size_t history_vectors() const override { return Law::history_vectors; }
+  bool has_moments() const override { return rotation; }
 
   void set_materials(const std::vector<Material>& materials, const std::vector<double>& friction,
                      int dimension) override {
@@ -32,8 +33,7 @@ class ForceLoopOf final : public ForceLoop {
     for (std::size_t c = 0; c < Cell::images; ++c) work.shift[c].set(state.cell.shift(static_cast<std::uint8_t>(c)));
 #pragma omp parallel for schedule(static) if (chunks > 1)
     for (std::size_t k = 0; k < chunks; ++k)
-      work.tally[k] =
-          options.scalar ? chunk<double>(state, work, k, dt, options) : chunk<Batch>(state, work, k, dt, options);
+      work.tally[k] = run_chunk(state, work, k, dt, options);
     Tally total;
     for (std::size_t k = 0; k < chunks; ++k) total += work.tally[k];
     return total;
@@ -42,102 +42,104 @@ class ForceLoopOf final : public ForceLoop {
   Tally walls(State& state, ForceWorkspace& work, double dt, const ForceOptions& options) const override;
 
  private:
+  /// Number type and damping are settled here, outside the loop over contacts.
+  Tally run_chunk(State& state, ForceWorkspace& work, std::size_t k, double dt, const ForceOptions& options) const {
+    const bool damped = options.normal_ratio > 0 || options.shear_ratio > 0;
+    if (options.scalar)
+      return damped ? chunk<double, true>(state, work, k, dt, options) : chunk<double, false>(state, work, k, dt, options);
+    return damped ? chunk<Batch, true>(state, work, k, dt, options) : chunk<Batch, false>(state, work, k, dt, options);
+  }
+
   template <class S>
   struct Sums {
     Mat<S> virial;
     S force = S(0.0), touching = S(0.0), stiffness = S(0.0), shear_work = S(0.0), friction = S(0.0), viscous = S(0.0);
   };
 
-  template <class S>
-  EG_INLINE Tally chunk(State& state, ForceWorkspace& work, std::size_t k, double dt,
+  template <class S, bool damped>
+  Tally chunk(State& state, ForceWorkspace& work, std::size_t k, double dt,
                         const ForceOptions& options) const {
-    constexpr std::size_t lanes = lanes_of<S>;
+    constexpr std::size_t lanes = lanes_of<S>, stride = rotation ? 2 : 1;
     constexpr std::size_t ahead = 4 * Contacts::lanes;  // contacts between a prefetch and its use
     Contacts& list = state.contacts;
     const std::size_t low = k * Contacts::chunk, high = std::min(state.grains.size(), low + Contacts::chunk);
-    std::fill(work.rows.begin() + static_cast<std::ptrdiff_t>(low),
-              work.rows.begin() + static_cast<std::ptrdiff_t>(high), ForceRow{});
-    std::fill(work.rows.begin() + work.schedule.halo_begin[k], work.rows.begin() + work.schedule.halo_begin[k + 1],
-              ForceRow{});
+    Quad* rows = work.rows.data();
+    std::fill(rows + stride * low, rows + stride * high, Quad{});
+    std::fill(rows + stride * work.schedule.halo_begin[k], rows + stride * work.schedule.halo_begin[k + 1], Quad{});
 
     const Quad *position = state.grains.position.data(), *velocity = state.grains.velocity.data(),
                *spin = state.grains.spin.data();
     const Index *ci = list.i.data(), *cj = list.j.data(), *target = work.schedule.target.data();
     const std::uint8_t* image = list.image.empty() ? nullptr : list.image.data();
-    auto* rows = reinterpret_cast<Quad*>(work.rows.data());
+    const Quad* shift = image ? work.shift.data() : nullptr;
     const bool uniform = state.grains.material.empty();
-    const bool damped = options.normal_ratio > 0 || options.shear_ratio > 0;
+    const bool prefetch = state.grains.size() > 20000;  // fewer stay in the second-level cache by themselves
+    const auto common = broadcast_struct<typename Law::template Constants<S>, S>(constants_.front());
     const Mat<S> affine = broadcast<S>(state.cell.rate);
     Sums<S> sums;
 
     const std::size_t end = list.chunk_begin[k + 1];
     for (std::size_t c = list.chunk_begin[k]; c < end; c += lanes) {
-      if (c + ahead < end) {
+      if (prefetch && c + ahead < end) {
         for (std::size_t l = 0; l < lanes; ++l) {
           const Index j = cj[c + ahead + l];
           __builtin_prefetch(position + j), __builtin_prefetch(velocity + j);
           if constexpr (rotation) __builtin_prefetch(spin + j);
-          __builtin_prefetch(rows + 2 * target[c + ahead + l], 1);
+          __builtin_prefetch(rows + stride * target[c + ahead + l], 1);
         }
       }
-      const auto pi = load_quads<S>(position, ci + c);
-      const auto pj = load_quads<S>(position, cj + c, image ? work.shift.data() : nullptr, image + c);
-      const Vec<S> branch = xyz(pj) - xyz(pi);
-      const auto g = grain_grain(branch, pi.w, pj.w, options.arms);
+      const auto x = load_difference<S>(position, ci + c, cj + c, shift, image + c);
+      const Vec<S> branch = xyz(x);
+      const S ri = load_w<S>(position, ci + c), rj = x.w - ri;
+      const auto g = grain_grain(branch, ri, x.w, options.arms);
       const auto touching = (g.overlap > S(0.0)) & (dot(branch, branch) > S(0.0));  // padding has branch 0
-      const auto vi = load_quads<S>(velocity, ci + c), vj = load_quads<S>(velocity, cj + c);
+      const auto v = load_difference<S>(velocity, ci + c, cj + c);
       Motion<S> motion;
-      motion.translation = (xyz(vj) - xyz(vi) + affine * branch) * S(dt);
+      motion.translation = (xyz(v) + affine * branch) * S(dt);
       if constexpr (rotation) {
-        motion.rotation_i = xyz(load_quads<S>(spin, ci + c)) * S(dt);
-        motion.rotation_j = xyz(load_quads<S>(spin, cj + c)) * S(dt);
+        motion.turn = xyz(load_sum<S>(spin, ci + c, cj + c)) * S(dt);
+        motion.roll = xyz(load_weighted_sum<S>(spin, position, ci + c, cj + c)) * S(dt);
       }
       const auto inc = increment<rotation>(g, motion);
-      const auto constants = gather_struct<typename Law::template Constants<S>, Table, S>(
-          constants_.data(), uniform,
-          [&](std::size_t l) { return state.grains.material[ci[c + l]] * kinds_ + state.grains.material[cj[c + l]]; });
-      const auto pair = Law::template pair<S>(constants, pi.w, pj.w);
+      const Sizes<S> sizes = grain_sizes(ri, rj);
+      const auto pair = Law::template pair<S>(
+          uniform ? common
+                  : gather_struct<typename Law::template Constants<S>, S>(
+                        constants_.data(),
+                        [&](std::size_t l) { return state.grains.material[ci[c + l]] * kinds_ + state.grains.material[cj[c + l]]; }),
+          sizes);
 
       ContactHistory<Law, S> history;
       double* stored =
           list.history.data() + (c / Contacts::lanes * list.history_size) * Contacts::lanes + c % Contacts::lanes;
       for (std::size_t h = 0; h < history.size(); ++h) history[h] = load_values<S>(stored + h * Contacts::lanes);
-      ContactForce<S> f;
-      if (damped) {
-        const S inverse = vi.w + vj.w;
-        const Dashpot<S> dashpot{S(options.normal_ratio), S(options.shear_ratio),
-                                 select(inverse > S(0.0), S(1.0) / inverse, S(0.0)), S(dt > 0 ? 1 / dt : 0)};
-        f = interact<Law, true>(pair, g, inc, touching, history, dashpot);
-      } else {
-        f = interact<Law, false>(pair, g, inc, touching, history, Dashpot<S>{});
-      }
+      Dashpot<S> dashpot;
+      if constexpr (damped)
+        dashpot = {S(options.normal_ratio), S(options.shear_ratio), select(v.w > S(0.0), S(1.0) / v.w, S(0.0)),
+                   S(dt > 0 ? 1 / dt : 0)};
+      const ContactForce<S> f = interact<Law, damped>(pair, g, inc, touching, history, dashpot);
       for (std::size_t h = 0; h < history.size(); ++h) store_values(stored + h * Contacts::lanes, history[h]);
+      add_contact<stride, S>(rows, ci + c, target + c, f.on_j, f.moment, g.arm_i, g.arm_j);
 
-      const S zero(0.0);
-      const Vec<S> on_i = -f.on_j;
-      add_quads<S>(rows, ci + c, 2, 0, {on_i.x, on_i.y, on_i.z, zero});
-      add_quads<S>(rows, target + c, 2, 0, {f.on_j.x, f.on_j.y, f.on_j.z, zero});
-      if constexpr (rotation) {
-        const Vec<S> mi = f.moment * g.arm_i, mj = f.moment * g.arm_j;
-        add_quads<S>(rows, ci + c, 2, 1, {mi.x, mi.y, mi.z, zero});
-        add_quads<S>(rows, target + c, 2, 1, {mj.x, mj.y, mj.z, zero});
-      }
-      if (options.tally) {
-        add(sums, branch, inc, f, touching);
-        if (options.viscous_history)
-          sums.viscous =
-              sums.viscous + viscous_work(stored + history.size() * Contacts::lanes, Contacts::lanes, g, inc, f);
-      }
+      if (options.tally == TallyLevel::none) continue;
+      add_stress(sums, branch, f, touching);
+      if (options.tally == TallyLevel::stress) continue;
+      add_works(sums, inc, f, touching);
+      if (options.viscous_history)
+        sums.viscous = sums.viscous + viscous_work(stored + history.size() * Contacts::lanes, Contacts::lanes, g, inc, f);
     }
     return finish(sums);
   }
 
   template <class S, class M>
-  EG_INLINE static void add(Sums<S>& sums, const Vec<S>& branch, const Increment<S>& inc, const ContactForce<S>& f,
-                            M touching) {
+  EG_INLINE static void add_stress(Sums<S>& sums, const Vec<S>& branch, const ContactForce<S>& f, M touching) {
     sums.virial += outer(f.on_j, branch);
     sums.stiffness = sums.stiffness + select(touching, f.law.normal.stiffness * dot(branch, branch), S(0.0));
-    sums.force = sums.force + norm(f.on_j);
+  }
+
+  template <class S, class M>
+  EG_INLINE static void add_works(Sums<S>& sums, const Increment<S>& inc, const ContactForce<S>& f, M touching) {
+    sums.force = sums.force + root(dot(f.on_j, f.on_j));
     sums.touching = sums.touching + select(touching, S(1.0), S(0.0));
     if constexpr (Law::history_vectors > 0) {
       const Vec<S> mean = (f.law.shear + f.shear_before) * S(0.5);  // trapezoidal rule over the increment
@@ -191,11 +193,11 @@ Tally ForceLoopOf<Law, rotation>::walls(State& state, ForceWorkspace& work, doub
     const Quad& p = state.grains.position[c.grain];
     const Quad& v = state.grains.velocity[c.grain];
     const auto g = grain_plane<double>(dot(p.vec() - wall.point, wall.normal), wall.normal, p.w, options.arms);
-    Motion<double> motion{(wall.velocity - v.vec()) * dt, {}, {}};
-    if constexpr (rotation) motion.rotation_i = state.grains.spin[c.grain].vec() * dt;
+        const Vec3 turned = rotation ? state.grains.spin[c.grain].vec() * dt : Vec3{};
+    const auto motion = wall_motion<double>((wall.velocity - v.vec()) * dt, turned, p.w);
     const auto inc = increment<rotation>(g, motion);
     const auto& constants = constants_[state.grains.material_of(c.grain) * kinds_ + wall.material];
-    const auto pair = Law::template pair<double>(constants, p.w, INFINITY);
+    const auto pair = Law::template pair<double>(constants, wall_sizes(p.w));
     ContactHistory<Law, double> history;
     std::copy_n(c.history.begin(), history.size(), history.begin());
     const Dashpot<double> dashpot{options.normal_ratio, options.shear_ratio, v.w > 0 ? 1 / v.w : 0,
@@ -203,13 +205,13 @@ Tally ForceLoopOf<Law, rotation>::walls(State& state, ForceWorkspace& work, doub
     const auto f = interact<Law, true>(pair, g, inc, g.overlap > 0, history, dashpot);
     std::copy_n(history.begin(), history.size(), c.history.begin());
 
-    ForceRow& row = work.rows[c.grain];
-    row.force.set(row.force.vec() - f.on_j);
-    if constexpr (rotation) row.moment.set(row.moment.vec() + f.moment * g.arm_i);
+    Quad* row = work.rows.data() + work.stride * c.grain;
+    row[0].set(row[0].vec() - f.on_j);
+    if constexpr (rotation) row[1].set(row[1].vec() + f.moment * g.arm_i);
     wall.force += f.on_j;
-    if (!options.tally) continue;
+    if (options.tally != TallyLevel::works) continue;
     Sums<double> sums;
-    add(sums, Vec3{}, inc, f, g.overlap > 0);
+    add_works(sums, inc, f, g.overlap > 0);
     if (options.viscous_history) sums.viscous = viscous_work<double>(c.history.data() + history.size(), 1, g, inc, f);
     tally += finish(sums);
   }

@@ -25,6 +25,7 @@ struct KickSums {
 double drift(State& state, double dt);
 
 /// c ← c + dt (F/m + g − L c) with damping, ω likewise; dt is the span between the half steps on both sides.
-KickSums kick(State& state, const ForceWorkspace& work, double dt, const KickOptions& options);
+/// The sums are made only with `works`.
+KickSums kick(State& state, const ForceWorkspace& work, double dt, const KickOptions& options, bool works);
 
 }  // namespace eg

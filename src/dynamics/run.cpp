@@ -28,7 +28,8 @@ void apply_stage(const Scene& scene, const State& state, Engine& engine) {
   engine.set_local_damping(scene.stages[state.stage].local_damping.value_or(scene.damping.local));
 }
 
-bool finished(const State& state, const StageSpec& s, const RunStatus& status) {
+bool finished(const State& state, const StageSpec& s, const RunStatus& status, bool checked) {
+  if (!checked && (given(s.until_stress_error) || given(s.until_unbalanced))) return false;
   if (given(s.until_steps) && static_cast<double>(state.stage_step) < s.until_steps) return false;
   if (given(s.until_time) && state.stage_time < s.until_time) return false;
   if (given(s.until_axial_strain) && std::abs(stage_strain(state)[state.dimension == 3 ? 2 : 1]) < s.until_axial_strain)
@@ -38,15 +39,29 @@ bool finished(const State& state, const StageSpec& s, const RunStatus& status) {
   return true;
 }
 
+bool every(const State& state, double n) {
+  return given(n) && std::fmod(static_cast<double>(state.stage_step), n) == 0;
+}
+double record_interval(const StageSpec& s) {
+  return given(s.record_every_steps) || given(s.record_every_strain) ? s.record_every_steps : 1000;
+}
+
+/// What a step must add up: all that checks and rows need at every tenth step and where a row falls by steps, the stress
+/// for a servo or for rows by strain, else nothing.
+TallyLevel tally_level(const State& state, const StageSpec& s) {
+  if (state.stage_step % 10 == 0 || every(state, record_interval(s)) || every(state, s.until_steps)) return TallyLevel::works;
+  bool servo = s.mean_stress.has_value() || given(s.record_every_strain);
+  for (const auto& c : s.control) servo = servo || c.kind == ComponentControl::Kind::stress;
+  return servo ? TallyLevel::stress : TallyLevel::none;
+}
+
 /// Whether a row is due: by steps, or by axial strain passing a multiple of the interval.
 bool due(const State& state, const StageSpec& s, double strain_before) {
-  const auto every = [&](double n) { return given(n) && std::fmod(static_cast<double>(state.stage_step), n) == 0; };
   if (given(s.record_every_strain)) {
     const double now = std::abs(stage_strain(state)[state.dimension == 3 ? 2 : 1]);
     if (std::floor(now / s.record_every_strain) != std::floor(strain_before / s.record_every_strain)) return true;
-    return every(s.record_every_steps);
   }
-  return every(given(s.record_every_steps) ? s.record_every_steps : 1000);
+  return every(state, record_interval(s));
 }
 
 }  // namespace
@@ -61,20 +76,22 @@ bool run_stages(const Scene& scene, State& state, StepPolicy& policy, const RunO
   while (state.stage < scene.stages.size()) {
     const StageSpec& stage = scene.stages[state.stage];
     const double strain_before = std::abs(stage_strain(state)[state.dimension == 3 ? 2 : 1]);
-    engine.move(true);
     ++state.stage_step;
+    const TallyLevel level = tally_level(state, stage);
+    engine.move(level);
     state.stage_time += state.dt;
     const double taken = state.dt;
     control_cell(state, stage, taken);
     engine.kick(policy.next_step(state));
+    const bool checked = level == TallyLevel::works;
+    if (checked) state.unbalanced = engine.unbalanced_ratio(), state.kinetic = engine.kick_sums().kinetic;
 
-    const RunStatus status{stage, engine, engine.unbalanced_ratio(), stress_error(state, stage),
-                           engine.kick_sums().kinetic};
+    const RunStatus status{stage, engine, state.unbalanced, stress_error(state, stage), state.kinetic};
     if (!std::isfinite(status.kinetic))
       throw RunError(fmt::format(
           "step {}: the motion is no longer finite; the step {:.3g} s was unstable: use policy = \"certified\"",
           state.step, taken));
-    const bool ends = finished(state, stage, status);
+    const bool ends = finished(state, stage, status, checked);
     if (observer.step) observer.step(state, status);
     if (observer.record && (ends || due(state, stage, strain_before))) observer.record(state, status);
     if (ends) {

@@ -122,11 +122,13 @@ void visit_plan(Archive& a, P& plan) {
 template <class Archive, class S>
 void visit_state(Archive& a, S& state) {
   auto& [dimension, time, step, dt, cell, grains, contacts, list, walls, wall_contacts, virial, stiffness_sum, ledger,
-         friction, stage, stage_step, stage_time, stage_cell, policy, servo] = state;
+         friction, stage, stage_step, stage_time, stage_cell, unbalanced, kinetic, policy, servo] = state;
   a.value("dimension", "-", dimension);
   a.value("time", "s", time);
   a.value("step", "-", step);
   a.value("dt", "s", dt);
+  a.value("unbalanced", "-", unbalanced);
+  a.value("kinetic", "J", kinetic);
   visit_cell(a, cell);
   visit_grains(a, grains);
   visit_contacts(a, contacts);

@@ -214,7 +214,7 @@ std::array<double, 2> default_skins(const State& state) {
   double mean = 0;
   for (const auto& p : state.grains.position) mean += p.w;
   mean /= static_cast<double>(std::max<std::size_t>(1, state.grains.size()));
-  return {0.2 * mean, 0.03 * mean};
+  return {0.2 * mean, 0.012 * mean};
 }
 
 }  // namespace eg

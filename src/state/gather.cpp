@@ -28,10 +28,10 @@ class Gatherer {
       ContactPoint p;
       p.i = list.i[c], p.j = list.j[c], p.entry = c;
       p.branch = g.position[p.j].vec() + state_.cell.shift(list.image_of(c)) - g.position[p.i].vec();
-      p.geometry = grain_grain(p.branch, g.radius(p.i), g.radius(p.j), arms_);
+      p.geometry = grain_grain(p.branch, g.radius(p.i), g.radius(p.i) + g.radius(p.j), arms_);
       if (list.history_vectors > 0) p.shear = {list.history_at(c, 0), list.history_at(c, 1), list.history_at(c, 2)};
       const auto pair = Law::template pair<double>(constants_[g.material_of(p.i) * kinds_ + g.material_of(p.j)],
-                                                   g.radius(p.i), g.radius(p.j));
+                                                   grain_sizes(g.radius(p.i), g.radius(p.j)));
       respond(p, pair, visit, growth);
     }
   }
@@ -47,7 +47,7 @@ class Gatherer {
       p.branch = wall.normal * -height;
       p.geometry = grain_plane(height, wall.normal, radius, arms_);
       if (state_.contacts.history_vectors > 0) p.shear = {contact.history[0], contact.history[1], contact.history[2]};
-      respond(p, Law::template pair<double>(constants_[g.material_of(p.i) * kinds_ + wall.material], radius, INFINITY),
+      respond(p, Law::template pair<double>(constants_[g.material_of(p.i) * kinds_ + wall.material], wall_sizes(radius)),
               visit, growth);
     }
   }

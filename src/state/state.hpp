@@ -98,6 +98,8 @@ struct State {
   std::uint64_t stage_step = 0;
   double stage_time = 0;
   Mat3 stage_cell;              ///< cell matrix when the stage began
+  double unbalanced = 1;        ///< mean net force over mean contact force at the last check [-]
+  double kinetic = 0;           ///< kinetic energy at the last check [J]
   StepPlan policy;
   std::array<double, 6> servo{};///< integral part of the cell controller [1/s]
 };

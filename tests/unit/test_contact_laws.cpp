@@ -21,26 +21,26 @@ TEST(Linear, DeformabilityGivesPublishedStiffness) {
   Material m;
   m.effective_modulus = 145e6, m.stiffness_ratio = 1.75;
   const auto c = Linear::constants(m, m, 3);
-  const auto equal = Linear::pair<double>(c, 2.5e-3, 2.5e-3);
+  const auto equal = Linear::pair<double>(c, grain_sizes(2.5e-3, 2.5e-3));
   EXPECT_NEAR(equal.kn, 569413.67, 0.01);
   EXPECT_NEAR(equal.ks, 325379.24, 0.01);
-  EXPECT_NEAR(Linear::pair<double>(c, 2e-3, 4e-3).kn, 303687.29, 0.01);
-  const auto wall = Linear::pair<double>(c, 2.5e-3, INFINITY);
+  EXPECT_NEAR(Linear::pair<double>(c, grain_sizes(2e-3, 4e-3)).kn, 303687.29, 0.01);
+  const auto wall = Linear::pair<double>(c, wall_sizes(2.5e-3));
   EXPECT_NEAR(wall.kn, 2 * equal.kn, 1e-6 * equal.kn);  // L = R instead of 2R
 }
 
 TEST(HertzMindlin, CheckValues) {
   const auto c = HertzMindlin::constants(both(), both(), 3);
-  const auto p = HertzMindlin::pair<double>(c, 1e-3, 1e-3);
+  const auto p = HertzMindlin::pair<double>(c, grain_sizes(1e-3, 1e-3));
   const auto n = HertzMindlin::normal<double>(p, 1e-6);
   EXPECT_NEAR(n.force, 0.98251472, 1e-8);
   EXPECT_NEAR(n.stiffness, 1473772.08, 0.01);
   EXPECT_NEAR(n.tangential, 1379701.52, 0.01);
-  EXPECT_NEAR(HertzMindlin::pair<double>(c, 1e-3, INFINITY).r_star, 1e-3, 1e-18);
+  EXPECT_NEAR(HertzMindlin::pair<double>(c, wall_sizes(1e-3)).r_star, 1e-3, 1e-18);
 }
 
 TEST(HertzMindlin, RescalingShortensShearOnUnloadingOnly) {
-  const auto p = HertzMindlinRescale::pair<double>(HertzMindlinRescale::constants(both(), both(), 3), 1e-3, 1e-3);
+  const auto p = HertzMindlinRescale::pair<double>(HertzMindlinRescale::constants(both(), both(), 3), grain_sizes(1e-3, 1e-3));
   ContactHistory<HertzMindlinRescale, double> h{};
   const Vec3 zero{};
   HertzMindlinRescale::respond<double>(p, {1e-6, {1e-8, 0, 0}}, h);
@@ -71,7 +71,7 @@ Sample<Law> sample(Random& random, double slip, double preload) {
   };
   s.ui = vec(slip), s.uj = vec(slip), s.ti = vec(slip / 1e-3), s.tj = vec(slip / 1e-3);
   if constexpr (Law::history_vectors > 0) {
-    const auto pair = Law::template pair<double>(Law::constants(both(), both(), 3), s.ri, s.rj);
+    const auto pair = Law::template pair<double>(Law::constants(both(), both(), 3), grain_sizes(s.ri, s.rj));
     Vec3 t = cross(n, vec(1));
     t *= preload * pair.friction * Law::template normal<double>(pair, overlap).force / norm(t);
     set_history_vector(s.history, 0, t);
@@ -89,14 +89,13 @@ Vec<S> lift(const Vec3& v) {
 template <class Law, class S>
 std::vector<S> forces(const Sample<Law>& s) {
   const auto table = Law::constants(both(), both(), 3);
-  const auto c = gather_struct<typename Law::template Constants<S>, typename Law::template Constants<double>, S>(
-      &table, true, [](std::size_t) { return std::size_t{0}; });
-  const auto g = grain_grain<S>(lift<S>(s.branch), S(s.ri), S(s.rj), Arms::middle);
-  const auto inc = increment<true>(g, Motion<S>{lift<S>(s.uj - s.ui), lift<S>(s.ti), lift<S>(s.tj)});
+  const auto c = broadcast_struct<typename Law::template Constants<S>, S>(table);
+  const auto g = grain_grain<S>(lift<S>(s.branch), S(s.ri), S(s.ri) + S(s.rj), Arms::middle);
+  const auto inc = increment<true>(g, motion_of<S>(lift<S>(s.uj - s.ui), lift<S>(s.ti), S(s.ri), lift<S>(s.tj), S(s.rj)));
   ContactHistory<Law, S> h;
   for (std::size_t k = 0; k < h.size(); ++k) h[k] = S(s.history[k]);
   const auto f =
-      interact<Law, false>(Law::template pair<S>(c, S(s.ri), S(s.rj)), g, inc, g.overlap > S(0.0), h, Dashpot<S>{});
+      interact<Law, false>(Law::template pair<S>(c, grain_sizes(S(s.ri), S(s.rj))), g, inc, g.overlap > S(0.0), h, Dashpot<S>{});
   std::vector<S> out{f.on_j.x, f.on_j.y, f.on_j.z};
   if constexpr (Law::history_vectors > 0)
     for (const auto& m : {f.moment * g.arm_i, f.moment * g.arm_j}) out.insert(out.end(), {m.x, m.y, m.z});
@@ -128,7 +127,7 @@ TYPED_TEST(EveryLaw, SameForcesInEveryNumberType) {
 }
 
 TYPED_TEST(EveryLaw, StiffnessesAreDerivatives) {
-  const auto p = TypeParam::template pair<double>(TypeParam::constants(both(), both(), 3), 1e-3, 2e-3);
+  const auto p = TypeParam::template pair<double>(TypeParam::constants(both(), both(), 3), grain_sizes(1e-3, 2e-3));
   for (const double overlap : {1e-9, 1e-7, 1e-6, 1e-5}) {
     const double h = 1e-4 * overlap;
     const auto n = TypeParam::template normal<double>(p, overlap);
@@ -167,21 +166,54 @@ TEST(Contact, StoredShearKeepsItsLengthAndTurnsWithTheBody) {
   EXPECT_NEAR(spun.y, 4 * std::cos(angle) + 3 * std::sin(angle), 1e-8);
 }
 
-TEST(Batch, TransposesAreInverse) {
-  std::array<Quad, 8> rows, back;
+TEST(Batch, PairLoadsEqualTheScalarOnes) {
+  Random random(8);
+  std::array<Quad, 12> rows, radii;
+  for (auto* set : {&rows, &radii})
+    for (auto& q : *set) q = {random.normal(), random.normal(), random.normal(), random.uniform(1, 2)};
+  const std::array<Index, 8> i{0, 0, 1, 2, 2, 2, 3, 3}, j{4, 5, 2, 7, 8, 9, 3, 11};
+  const std::array<std::uint8_t, 8> image{0, 1, 2, 3, 4, 5, 6, 7};
+  const auto d = load_difference<Batch>(rows.data(), i.data(), j.data(), radii.data(), image.data());
+  const auto w = load_weighted_sum<Batch>(rows.data(), radii.data(), i.data(), j.data());
+  const auto s = load_sum<Batch>(rows.data(), i.data(), j.data());
+  for (std::size_t k = 0; k < 8; ++k) {
+    const auto d1 = load_difference<double>(rows.data(), &i[k], &j[k], radii.data(), &image[k]);
+    const auto w1 = load_weighted_sum<double>(rows.data(), radii.data(), &i[k], &j[k]);
+    EXPECT_NEAR(d.x[k], d1.x, 1e-14);
+    EXPECT_NEAR(d.w[k], d1.w + radii[image[k]].w * 1.0, 1e-14);  // the table's w is added too; images have 0
+    EXPECT_NEAR(w.z[k], w1.z, 1e-14);
+    EXPECT_NEAR(s.y[k], rows[i[k]].y + rows[j[k]].y, 1e-14);
+    EXPECT_EQ(load_w<Batch>(rows.data(), j.data())[k], rows[j[k]].w);
+  }
+}
+
+TEST(Batch, ContactsAddUpOnOneGrainInSeveralLanes) {
+  const std::array<Index, 8> i{0, 0, 0, 1, 1, 2, 3, 3}, j{1, 2, 3, 2, 4, 4, 4, 5};
+  Random random(9);
+  Vec<Batch> f, m;
+  Batch ai, aj;
+  for (auto* v : {&f.x, &f.y, &f.z, &m.x, &m.y, &m.z, &ai, &aj})
+    for (int k = 0; k < 8; ++k) v->v[k] = random.normal();
+  std::array<Quad, 12> batch{}, scalar{};
+  add_contact<2, Batch>(batch.data(), i.data(), j.data(), f, m, ai, aj);
   for (std::size_t k = 0; k < 8; ++k)
-    rows[k] = {10.0 * double(k), 10.0 * double(k) + 1, 10.0 * double(k) + 2, 10.0 * double(k) + 3};
-  const std::array<Index, 8> index{0, 1, 2, 3, 4, 5, 6, 7};
-  const auto c = load_quads<Batch>(rows.data(), index.data());
-  for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(c.y[k] + 1000 * c.w[k], rows[k].y + 1000 * rows[k].w);
-  back = {};
-  add_quads<Batch>(back.data(), index.data(), 1, 0, c);
-  for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(back[k].x + 1000 * back[k].z, rows[k].x + 1000 * rows[k].z);
-  // one grain in several lanes must receive the sum
-  const std::array<Index, 8> same{2, 2, 2, 2, 2, 2, 2, 2};
-  back = {};
-  add_quads<Batch>(back.data(), same.data(), 1, 0, c);
-  EXPECT_EQ(back[2].x, 280);
+    add_contact<2, double>(scalar.data(), &i[k], &j[k], {f.x[k], f.y[k], f.z[k]}, {m.x[k], m.y[k], m.z[k]}, ai[k], aj[k]);
+  for (std::size_t q = 0; q < 12; ++q) {
+    EXPECT_NEAR(batch[q].x, scalar[q].x, 1e-14);
+    EXPECT_NEAR(batch[q].y, scalar[q].y, 1e-14);
+    EXPECT_NEAR(batch[q].z, scalar[q].z, 1e-14);
+  }
+}
+
+TEST(Batch, FastRootsAreAccurate) {
+  Random random(10);
+  for (int trial = 0; trial < 1000; ++trial) {
+    const double a = std::exp(random.uniform(-60, 60));
+    EXPECT_NEAR(rsqrt(Batch(a))[3] * std::sqrt(a), 1, 5e-16);
+    EXPECT_NEAR(reciprocal(Batch(a))[3] * a, 1, 5e-16);
+    EXPECT_NEAR(root(Batch(a))[3] / std::sqrt(a), 1, 7e-16);
+  }
+  EXPECT_EQ(root(Batch(0.0))[0], 0.0);
 }
 
 TEST(Batch, SelectAndMasksWork) {  // clang 14 with std::experimental::simd silently fails this kind of test

@@ -101,7 +101,7 @@ State pressed(const Scene& scene, double dt) {
   engine.set_local_damping(0.7);
   engine.kick(dt);
   do {
-    engine.move(true);
+    engine.move(TallyLevel::works);
     control_cell(state, stage, dt);
     engine.kick(dt);
   } while (stress_error(state, stage) > 1e-4 || engine.unbalanced_ratio() > 1e-4);
@@ -223,7 +223,7 @@ double bisected_limit(const Scene& scene, const State& start, double guess) {
     engine.kick(dt);
     const double before = engine.kick_sums().kinetic + 1e-300;
     for (int k = 0; k < 1200; ++k) {
-      engine.step(dt, false);
+      engine.step(dt, TallyLevel::none);
       double kinetic = 0;
       for (const auto& v : state.grains.velocity) kinetic += 0.5 / v.w * dot(v.vec(), v.vec());
       if (kinetic > 1e8 * before) return true;

@@ -24,7 +24,7 @@ Eigen::VectorXd forces_after(const Scene& scene, State state, const Eigen::Vecto
     if (state.grains.rotates()) state.grains.spin[i].set(theta * (1 / dt));
   }
   Engine engine(scene, state, scalar);
-  engine.forces(dt, false);
+  engine.forces(dt, TallyLevel::none);
   Eigen::VectorXd f(static_cast<Eigen::Index>(6 * state.grains.size()));
   for (std::size_t i = 0; i < state.grains.size(); ++i) {
     const ForceRow row = gather_row(engine.workspace(), i);
