@@ -17,7 +17,6 @@ if(EIGENGRAIN_NATIVE)
   endif()
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  add_compile_options(-mmove-max=512 -mstore-max=512) # batches copied whole: halves stored apart cannot be forwarded
   add_compile_options(-Wno-maybe-uninitialized -Wno-uninitialized) # false alarms of g++ 12 in its own AVX-512 header (GCC bug 105593)
 endif()
 if(EIGENGRAIN_WERROR)
