@@ -5,9 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/version.hpp"
 #include "app/commands.hpp"
 #include "app/prepare.hpp"
+#include "base/version.hpp"
 #include "contact/laws.hpp"
 #include "dynamics/engine.hpp"
 #include "io/scene_file.hpp"
@@ -18,6 +18,7 @@ namespace {
 
 struct InfoFlags {
   std::string input;
+  SceneSettings settings;
   bool memory = false, json = false;
 };
 
@@ -28,48 +29,70 @@ struct ArraySize {
 };
 
 template <class T>
-std::size_t bytes_of(const T& v) { return v.size() * sizeof(typename T::value_type); }
+std::size_t bytes_of(const T& v) {
+  return v.size() * sizeof(typename T::value_type);
+}
 
 std::vector<ArraySize> arrays_of(const State& s, const ForceWorkspace& w) {
-  return {{"position and radius", bytes_of(s.grains.position), false}, {"velocity and mass", bytes_of(s.grains.velocity), false},
-          {"spin and inertia", bytes_of(s.grains.spin), false}, {"ids", bytes_of(s.grains.id), false},
-          {"materials", bytes_of(s.grains.material), false}, {"forces", bytes_of(w.rows), false},
+  return {{"position and radius", bytes_of(s.grains.position), false},
+          {"velocity and mass", bytes_of(s.grains.velocity), false},
+          {"spin and inertia", bytes_of(s.grains.spin), false},
+          {"ids", bytes_of(s.grains.id), false},
+          {"materials", bytes_of(s.grains.material), false},
+          {"forces", bytes_of(w.rows), false},
           {"force schedule", bytes_of(w.schedule.gather_begin) + bytes_of(w.schedule.gather_row), false},
           {"reference positions", bytes_of(s.list.reference), false},
           {"neighbour list", bytes_of(s.list.begin) + bytes_of(s.list.j) + bytes_of(s.list.image), false},
-          {"contact pairs", bytes_of(s.contacts.i) + bytes_of(s.contacts.j) + bytes_of(s.contacts.image) + bytes_of(w.schedule.target), true},
-          {"contact history", bytes_of(s.contacts.history), true}, {"wall contacts", bytes_of(s.wall_contacts), true}};
+          {"contact pairs",
+           bytes_of(s.contacts.i) + bytes_of(s.contacts.j) + bytes_of(s.contacts.image) + bytes_of(w.schedule.target),
+           true},
+          {"contact history", bytes_of(s.contacts.history), true},
+          {"wall contacts", bytes_of(s.wall_contacts), true}};
 }
 
 nlohmann::json scene_json(const Scene& scene, const State& state) {
   bool friction = false;
   for (const auto& m : scene.materials) friction = friction || m.friction > 0;
-  return {{"title", scene.title}, {"dimension", scene.dimension}, {"particles", state.grains.size()}, {"law", scene.contact.law},
-          {"friction", friction}, {"shear_history", state.contacts.history_vectors > 0}, {"rotation", state.grains.rotates()},
-          {"walls", state.walls.size()}, {"periodic", state.cell.periodic}, {"energy_ledger", scene.energy},
-          {"timestep_policy", scene.timestep.policy}, {"stages", scene.stages.size()}};
+  return {{"title", scene.title},
+          {"dimension", scene.dimension},
+          {"particles", state.grains.size()},
+          {"law", scene.contact.law},
+          {"friction", friction},
+          {"shear_history", state.contacts.history_vectors > 0},
+          {"rotation", state.grains.rotates()},
+          {"walls", state.walls.size()},
+          {"periodic", state.cell.periodic},
+          {"energy_ledger", scene.energy},
+          {"timestep_policy", scene.timestep.policy},
+          {"stages", scene.stages.size()}};
 }
 
 int info_command(const InfoFlags& flags) {
   if (flags.input.empty()) {
-    const nlohmann::json j{{"version", version()}, {"compiler", __VERSION__}, {"batch_lanes", Batch::lanes},
+    const nlohmann::json j {
+      {"version", version()}, {"compiler", __VERSION__}, {"batch_lanes", Batch::lanes},
 #if defined(__AVX512F__)
-                           {"vector_bits", 512},
+          {"vector_bits", 512},
 #elif defined(__AVX__)
-                           {"vector_bits", 256},
+          {"vector_bits", 256},
 #else
-                           {"vector_bits", 128},
+          {"vector_bits", 128},
 #endif
-                           {"threads", omp_get_max_threads()}, {"laws", law_names()}, {"lattices", lattice_names()}};
-    if (flags.json) fmt::print("{}\n", j.dump(2));
+          {"threads", omp_get_max_threads()}, {"laws", law_names()}, {
+        "lattices", lattice_names()
+      }
+    };
+    if (flags.json)
+      fmt::print("{}\n", j.dump(2));
     else
-      fmt::print("eigengrain {}\n  compiler   {}\n  vectors    {} bits\n  threads    {}\n  laws       {}\n  lattices   {}\n", version(), __VERSION__,
-                 j["vector_bits"].get<int>(), omp_get_max_threads(), fmt::join(law_names(), ", "), fmt::join(lattice_names(), ", "));
+      fmt::print(
+          "eigengrain {}\n  compiler   {}\n  vectors    {} bits\n  threads    {}\n  laws       {}\n  lattices   {}\n",
+          version(), __VERSION__, j["vector_bits"].get<int>(), omp_get_max_threads(), fmt::join(law_names(), ", "),
+          fmt::join(lattice_names(), ", "));
     return 0;
   }
-  const InputKind kind = kind_of(flags.input);
-  Snapshot s = kind == InputKind::snapshot ? read_snapshot(flags.input) : Snapshot{read_scene(flags.input), {}};
-  if (kind != InputKind::snapshot) s.state = make_specimen(s.scene);
+  Snapshot s = read_input(flags.input, flags.settings);
+  if (s.state.grains.size() == 0) s.state = make_specimen(s.scene);
   Engine engine(s.scene, s.state);
   nlohmann::json j = scene_json(s.scene, s.state);
   if (flags.memory) {
@@ -77,7 +100,8 @@ int info_command(const InfoFlags& flags) {
     const auto n = static_cast<double>(std::max<std::size_t>(1, s.state.grains.size()));
     for (const auto& a : arrays_of(s.state, engine.workspace())) {
       total += static_cast<double>(a.bytes);
-      j["memory"].push_back({{"array", a.name}, {"bytes", a.bytes}, {"bytes_per_particle", static_cast<double>(a.bytes) / n}});
+      j["memory"].push_back(
+          {{"array", a.name}, {"bytes", a.bytes}, {"bytes_per_particle", static_cast<double>(a.bytes) / n}});
     }
     j["bytes_per_particle"] = total / n;
   }
@@ -89,7 +113,8 @@ int info_command(const InfoFlags& flags) {
     if (key != "memory") fmt::print("  {:<20}{}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
   if (flags.memory)
     for (const auto& row : j["memory"])
-      fmt::print("    {:<22}{:>12} B  {:>8.1f} B a particle\n", row["array"].get<std::string>(), row["bytes"].get<std::size_t>(), row["bytes_per_particle"].get<double>());
+      fmt::print("    {:<22}{:>12} B  {:>8.1f} B a particle\n", row["array"].get<std::string>(),
+                 row["bytes"].get<std::size_t>(), row["bytes_per_particle"].get<double>());
   return 0;
 }
 
@@ -99,6 +124,7 @@ void add_info_command(CLI::App& app, Action& action) {
   auto* sub = app.add_subcommand("info", "what this program can do, or what a scene uses");
   auto flags = std::make_shared<InfoFlags>();
   sub->add_option("input", flags->input, "scene or snapshot");
+  add_settings_option(*sub, flags->settings);
   sub->add_flag("--memory", flags->memory, "bytes by array");
   sub->add_flag("--json", flags->json, "print as JSON");
   sub->callback([flags, &action] { action = [flags] { return info_command(*flags); }; });

@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <exception>
 
-#include "base/version.hpp"
 #include "app/commands.hpp"
 #include "base/error.hpp"
+#include "base/version.hpp"
 
 int main(int argc, char** argv) {
   CLI::App app{"eigengrain: discrete elements with a proved time step (SI units everywhere)", "eigengrain"};

@@ -19,18 +19,43 @@ namespace eg {
 
 InputKind kind_of(const std::string& path) {
   if (!std::filesystem::exists(path)) throw input_error(path, 0, "the file", "does not exist", "check the path");
-  if (std::filesystem::is_directory(path)) throw input_error(path, 0, "this", "is a folder, not a file", "name a scene, a snapshot or a packing");
+  if (std::filesystem::is_directory(path))
+    throw input_error(path, 0, "this", "is a folder, not a file", "name a scene, a snapshot or a packing");
   if (looks_like_snapshot(path)) return InputKind::snapshot;
   if (std::filesystem::path(path).extension() == ".toml") return InputKind::scene;
   std::ifstream in(path);
   for (std::string line; std::getline(in, line);) {
     const auto first = line.find_first_not_of(" \t\r");
     if (first == std::string::npos || line[first] == '#') continue;
-    return std::isdigit(static_cast<unsigned char>(line[first])) || line[first] == '.' || line[first] == '+' || line[first] == '-'
+    return std::isdigit(static_cast<unsigned char>(line[first])) || line[first] == '.' || line[first] == '+' ||
+                   line[first] == '-'
                ? InputKind::packing
                : InputKind::scene;
   }
   return InputKind::packing;  // its reader says that it is empty
+}
+
+void add_settings_option(CLI::App& command, SceneSettings& settings) {
+  command
+      .add_option("--set", settings,
+                  "KEY=VALUE in the place of what the scene says, e.g. specimen.count=300; repeatable")
+      ->type_size(1)
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+}
+
+Snapshot read_input(const std::string& path, const SceneSettings& settings) {
+  switch (kind_of(path)) {
+    case InputKind::scene:
+      return {read_scene(path, settings), {}};
+    case InputKind::snapshot:
+      if (settings.empty()) return read_snapshot(path);
+      throw input_error(path, 0, "--set", "changes scenes, and this is a snapshot", "set it when the run begins");
+    case InputKind::packing:
+      break;
+  }
+  throw input_error(path, 0, "this", "is a packing, neither scene nor snapshot",
+                    "name it in a scene: [specimen] source = \"file\", path = \"…\"");
 }
 
 State make_specimen(const Scene& scene) {
@@ -39,7 +64,8 @@ State make_specimen(const Scene& scene) {
   if (!looks_like_snapshot(path)) return make_state(scene, read_packing(path));
   State state = read_snapshot(path).state;  // grains, contacts and cell; the new scene's stages begin
   if (state.dimension != scene.dimension)
-    throw input_error(scene.file, 0, "specimen.path", fmt::format("is a {}D snapshot in a {}D scene", state.dimension, scene.dimension));
+    throw input_error(scene.file, 0, "specimen.path",
+                      fmt::format("is a {}D snapshot in a {}D scene", state.dimension, scene.dimension));
   state.stage = 0, state.step = 0, state.time = 0, state.ledger = {}, state.policy = {}, state.dt = 0;
   state.friction.clear();
   return state;
@@ -47,26 +73,27 @@ State make_specimen(const Scene& scene) {
 
 Snapshot bare_packing(const std::string& path, const BareFlags& f) {
   const Packing packing = read_packing(path);
-  std::string text = fmt::format("title = \"bare packing\"\ndimension = {}\nrotation = {}\n[material.grain]\n", packing.dimension, !f.no_rotation);
+  std::string text = fmt::format("title = \"bare packing\"\ndimension = {}\nrotation = {}\n[material.grain]\n",
+                                 packing.dimension, !f.no_rotation);
   const auto line = [&](const char* key, double value) {
     if (!std::isnan(value)) text += fmt::format("{} = {:e}\n", key, value);
   };
-  line("shear_modulus", f.shear_modulus), line("poisson", f.poisson), line("density", f.density), line("friction", f.friction);
+  line("shear_modulus", f.shear_modulus), line("poisson", f.poisson), line("density", f.density),
+      line("friction", f.friction);
   line("normal_stiffness", f.normal_stiffness), line("shear_stiffness", f.shear_stiffness);
-  text += fmt::format("[contact]\nlaw = \"{}\"\narms = \"{}\"\n[specimen]\nsource = \"file\"\npath = '{}'\n[boundary]\ntype = \"periodic\"\n", f.law, f.arms,
-                      std::filesystem::absolute(path).string());
+  text += fmt::format(
+      "[contact]\nlaw = \"{}\"\narms = \"{}\"\n[specimen]\nsource = \"file\"\npath = '{}'\n[boundary]\ntype = "
+      "\"periodic\"\n",
+      f.law, f.arms, std::filesystem::absolute(path).string());
   try {
     const Scene scene = parse_scene(text, path);
     return {scene, make_state(scene, packing)};
   } catch (const InputError& e) {
-    throw InputError(fmt::format("{}; give the material of a bare packing by flags, e.g. --law hertz-mindlin --shear-modulus 29e9 "
-                                 "--poisson 0.12 --density 2650 --friction 0.25, or use a scene", e.what()));
+    throw InputError(
+        fmt::format("{}; give the material of a bare packing by flags, e.g. --law hertz-mindlin --shear-modulus 29e9 "
+                    "--poisson 0.12 --density 2650 --friction 0.25, or use a scene",
+                    e.what()));
   }
-}
-
-std::string run_note(const State& state, const RunStatus& status) {
-  return fmt::format("{}: p = {:.4g} {}, unbalanced {:.1e}, dt = {:.3g} s", status.stage.name, mean_stress(state),
-                     state.dimension == 3 ? "Pa" : "N/m", status.unbalanced, state.dt);
 }
 
 std::optional<double> stage_share(const State& state, const StageSpec& s) {
@@ -81,12 +108,30 @@ std::optional<double> stage_share(const State& state, const StageSpec& s) {
   return std::min(share, 1.0);
 }
 
+double run_share(const Scene& scene, const State& state) {
+  const auto counted = [](const StageSpec& s) {
+    return !(std::isnan(s.until_steps) && std::isnan(s.until_time) && std::isnan(s.until_axial_strain)) &&
+           std::isnan(s.until_stress_error) && std::isnan(s.until_unbalanced);
+  };
+  if (!std::ranges::all_of(scene.stages, counted)) return Progress::unknown;
+  const double now = state.stage < scene.stages.size() ? stage_share(state, scene.stages[state.stage]).value_or(0) : 0;
+  return (static_cast<double>(state.stage) + now) / static_cast<double>(scene.stages.size());
+}
+
+std::string run_note(const Scene& scene, const State& state, const RunStatus& status) {
+  const auto share = stage_share(state, status.stage);
+  return fmt::format("stage {}/{} {}{}: p = {:.4g} {}, unbalanced {:.1e}, dt = {:.3g} s", state.stage + 1,
+                     scene.stages.size(), status.stage.name,
+                     share ? fmt::format(" {:.0f} %", std::floor(100 * *share)) : "", mean_stress(state),
+                     state.dimension == 3 ? "Pa" : "N/m", status.unbalanced, state.dt);
+}
+
 void run_quietly(const Scene& scene, State& state) {
   Controller controller(scene);
   Progress progress("preparing", 0, "steps");
   RunObserver observer;
   observer.step = [&](const State& s, const RunStatus& status) {
-    progress.update(static_cast<double>(s.step), [&] { return run_note(s, status); });
+    progress.update(static_cast<double>(s.step), run_share(scene, s), [&] { return run_note(scene, s, status); });
   };
   run_stages(scene, state, controller, observer);
 }

@@ -48,12 +48,21 @@ std::vector<HistoryColumn> history_columns(const Scene& scene) {
                                                              : std::vector<std::string>{"x", "y", "xy"};
   for (const auto& a : axes) c.push_back({"strain_" + a, "-"});
   for (const auto& a : axes) c.push_back({"stress_" + a, stress});
-  for (const auto& [name, unit] : std::initializer_list<std::pair<const char*, std::string>>{
-           {"mean_stress", stress}, {"deviator", stress}, {"void_ratio", "-"}, {"coordination", "-"}, {"mechanical_coordination", "-"},
-           {"sliding_fraction", "-"}, {"largest_overlap", "-"}, {"inertial_number", "-"}, {"unbalanced_force", "-"}, {"kinetic_energy", joule}})
+  for (const auto& [name, unit] :
+       std::initializer_list<std::pair<const char*, std::string>>{{"mean_stress", stress},
+                                                                  {"deviator", stress},
+                                                                  {"void_ratio", "-"},
+                                                                  {"coordination", "-"},
+                                                                  {"mechanical_coordination", "-"},
+                                                                  {"sliding_fraction", "-"},
+                                                                  {"largest_overlap", "-"},
+                                                                  {"inertial_number", "-"},
+                                                                  {"unbalanced_force", "-"},
+                                                                  {"kinetic_energy", joule}})
     c.push_back({name, unit});
   if (scene.energy)
-    for (const char* name : {"elastic_normal", "elastic_shear", "friction_work", "shear_path_work", "damping_work", "outside_work", "energy_residual"})
+    for (const char* name : {"elastic_normal", "elastic_shear", "friction_work", "shear_path_work", "damping_work",
+                             "outside_work", "energy_residual"})
       c.push_back({name, joule});
   return c;
 }
@@ -62,12 +71,13 @@ std::vector<double> history_row(const Scene& scene, const State& state, const Ru
   const Homogenised h = homogenise(scene, state);
   const auto strain = stage_strain(state), stress = stress_components(state);
   std::vector<double> row{static_cast<double>(state.stage + 1), state.time, state.dt, state.policy.safe};
-  const std::vector<std::size_t> axes = scene.dimension == 3 ? std::vector<std::size_t>{0, 1, 2, 3, 4, 5} : std::vector<std::size_t>{0, 1, 5};
+  const std::vector<std::size_t> axes =
+      scene.dimension == 3 ? std::vector<std::size_t>{0, 1, 2, 3, 4, 5} : std::vector<std::size_t>{0, 1, 5};
   for (const auto k : axes) row.push_back(strain[k]);
   for (const auto k : axes) row.push_back(stress[k]);
-  row.insert(row.end(), {mean_stress(state), deviator(contact_stress(state), scene.dimension), h.void_ratio, h.coordination.mean,
-                         h.coordination.mechanical, h.sliding_fraction, h.largest_overlap, inertia(scene, state, h.sizes.d50),
-                         status.unbalanced, status.kinetic});
+  row.insert(row.end(), {mean_stress(state), deviator(contact_stress(state), scene.dimension), h.void_ratio,
+                         h.coordination.mean, h.coordination.mechanical, h.sliding_fraction, h.largest_overlap,
+                         inertia(scene, state, h.sizes.d50), status.unbalanced, status.kinetic});
   if (scene.energy) {
     const EnergyTable e = energies(scene, state, status.kinetic);
     row.insert(row.end(), {e.normal, e.shear, e.friction, e.path, e.damping, e.work, e.residual});
@@ -79,16 +89,19 @@ std::vector<std::string> broken_assumptions(const Scene& scene, const State& sta
   std::vector<std::string> out;
   const Homogenised h = homogenise(scene, state);
   if (h.largest_overlap > 0.05)
-    out.push_back(fmt::format("largest overlap {:.2f} % of the smaller diameter (limit 5 %): contacts are too soft for this stress", 100 * h.largest_overlap));
+    out.push_back(fmt::format(
+        "largest overlap {:.2f} % of the smaller diameter (limit 5 %): contacts are too soft for this stress",
+        100 * h.largest_overlap));
   const double i = inertia(scene, state, h.sizes.d50);
   if (i > 2.5e-3) out.push_back(fmt::format("inertial number {:.2e} (limit 2.5e-3): not quasi-static", i));
   if (state.policy.safe > 0 && state.dt > state.policy.safe * (1 + 1e-12))
-    out.push_back(fmt::format("time step {:.4g} s is {:.2f} times the certified limit {:.4g} s: it may be unstable", state.dt,
-                              state.dt / state.policy.safe, state.policy.safe));
+    out.push_back(fmt::format("time step {:.4g} s is {:.2f} times the certified limit {:.4g} s: it may be unstable",
+                              state.dt, state.dt / state.policy.safe, state.policy.safe));
   if (scene.energy) {
     const EnergyTable e = energies(scene, state, status.kinetic);
     if (std::abs(e.residual) > 0.01 * std::abs(e.work))
-      out.push_back(fmt::format("energy drift {:.2e} J is {:.1f} % of the work done (limit 1 %)", e.residual, 100 * std::abs(e.residual / e.work)));
+      out.push_back(fmt::format("energy drift {:.2e} J is {:.1f} % of the work done (limit 1 %)", e.residual,
+                                100 * std::abs(e.residual / e.work)));
   }
   return out;
 }

@@ -21,11 +21,11 @@ std::vector<std::string> broken_assumptions(const Scene& scene, const State& sta
 
 /// Energies of a state [J]: elastic part from the contacts, the rest from its ledger.
 struct EnergyTable {
-  double kinetic = 0, normal = 0, shear = 0;   ///< stored
-  double friction = 0, path = 0;               ///< by sliding; by the path dependence of the tangential law
-  double damping = 0;                          ///< local, mass and contact damping together
-  double work = 0;                             ///< done from outside: boundary and body
-  double residual = 0;                         ///< what does not balance
+  double kinetic = 0, normal = 0, shear = 0;  ///< stored
+  double friction = 0, path = 0;              ///< by sliding; by the path dependence of the tangential law
+  double damping = 0;                         ///< local, mass and contact damping together
+  double work = 0;                            ///< done from outside: boundary and body
+  double residual = 0;                        ///< what does not balance
 };
 EnergyTable energies(const Scene& scene, const State& state, double kinetic);
 

@@ -7,13 +7,13 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "base/version.hpp"
 #include "app/commands.hpp"
 #include "app/interrupt.hpp"
 #include "app/prepare.hpp"
 #include "app/record.hpp"
 #include "base/error.hpp"
 #include "base/progress.hpp"
+#include "base/version.hpp"
 #include "boundary/cell_control.hpp"
 #include "io/scene_file.hpp"
 #include "io/snapshot.hpp"
@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 
 struct RunFlags {
   std::string input, out;
+  SceneSettings settings;
   bool overwrite = false, json = false, scalar = false;
   int threads = 0;
 };
@@ -37,7 +38,9 @@ fs::path result_folder(const RunFlags& flags, bool resumed) {
   if (!flags.out.empty() || !resumed) {
     const fs::path folder = flags.out.empty() ? fs::path("out") / input.stem() : fs::path(flags.out);
     if (fs::exists(folder / "history.csv") && !flags.overwrite && !resumed)
-      throw InputError(fmt::format("{}: holds the results of an earlier run; name another folder with --out, or say --overwrite", folder.string()));
+      throw InputError(
+          fmt::format("{}: holds the results of an earlier run; name another folder with --out, or say --overwrite",
+                      folder.string()));
     fs::create_directories(folder);
     return folder;
   }
@@ -48,7 +51,8 @@ fs::path result_folder(const RunFlags& flags, bool resumed) {
 class Recorder {
  public:
   Recorder(const Scene& scene, const State& state, fs::path folder, bool resumed)
-      : scene_(scene), folder_(std::move(folder)),
+      : scene_(scene),
+        folder_(std::move(folder)),
         history_(resumed ? History::resume((folder_ / "history.csv").string(), history_columns(scene), state.step)
                          : History::create((folder_ / "history.csv").string(), history_columns(scene))) {}
 
@@ -80,67 +84,83 @@ class Recorder {
   std::map<std::string, std::string> seen_;
 };
 
-nlohmann::json result_json(const Scene& scene, const State& state, const ControllerLog& log, double seconds, const Recorder& recorder) {
+nlohmann::json result_json(const Scene& scene, const State& state, const ControllerLog& log, double seconds,
+                           const Recorder& recorder) {
   const Homogenised h = homogenise(scene, state);
   const auto s = stress_components(state);
-  nlohmann::json j{{"title", scene.title}, {"version", version()}, {"steps", state.step}, {"time_s", state.time},
-                   {"particles", state.grains.size()}, {"stress_Pa", s}, {"mean_stress_Pa", mean_stress(state)},
-                   {"void_ratio", h.void_ratio}, {"solid_fraction", h.solid_fraction}, {"coordination", h.coordination.mean},
-                   {"mechanical_coordination", h.coordination.mechanical}, {"backbone_coordination", h.backbone.mean},
-                   {"largest_overlap", h.largest_overlap}, {"unbalanced_force", h.unbalanced_force}, {"dt_s", state.dt},
-                   {"dt_certified_s", state.policy.safe}, {"certificate_evaluations", log.evaluations},
-                   {"certificate_share", seconds > 0 ? log.seconds / seconds : 0.0}, {"elapsed_s", seconds}, {"warnings", recorder.warnings()}};
+  nlohmann::json j{{"title", scene.title},
+                   {"version", version()},
+                   {"steps", state.step},
+                   {"time_s", state.time},
+                   {"particles", state.grains.size()},
+                   {"stress_Pa", s},
+                   {"mean_stress_Pa", mean_stress(state)},
+                   {"void_ratio", h.void_ratio},
+                   {"solid_fraction", h.solid_fraction},
+                   {"coordination", h.coordination.mean},
+                   {"mechanical_coordination", h.coordination.mechanical},
+                   {"backbone_coordination", h.backbone.mean},
+                   {"largest_overlap", h.largest_overlap},
+                   {"unbalanced_force", h.unbalanced_force},
+                   {"dt_s", state.dt},
+                   {"dt_certified_s", state.policy.safe},
+                   {"certificate_evaluations", log.evaluations},
+                   {"certificate_share", seconds > 0 ? log.seconds / seconds : 0.0},
+                   {"elapsed_s", seconds},
+                   {"warnings", recorder.warnings()}};
   if (scene.energy) {
     const auto& e = state.ledger;
-    j["energy_J"] = {{"boundary", e.boundary}, {"body", e.body}, {"friction", e.friction}, {"local_damping", e.local_damping},
+    j["energy_J"] = {{"boundary", e.boundary},         {"body", e.body},
+                     {"friction", e.friction},         {"local_damping", e.local_damping},
                      {"mass_damping", e.mass_damping}, {"viscous_damping", e.viscous_damping}};
   }
   return j;
 }
 
 void print_result(const nlohmann::json& j, const fs::path& folder, int dimension) {
-  fmt::print("{} grains, {} steps, {:.6g} s simulated in {}\n", j["particles"].get<std::size_t>(), j["steps"].get<std::uint64_t>(),
-             j["time_s"].get<double>(), duration_text(j["elapsed_s"].get<double>()));
-  fmt::print("  mean stress              {:.6g} {}\n  void ratio               {:.5f}  (solid fraction {:.5f})\n", j["mean_stress_Pa"].get<double>(),
-             dimension == 3 ? "Pa" : "N/m", j["void_ratio"].get<double>(), j["solid_fraction"].get<double>());
+  fmt::print("{} grains, {} steps, {:.6g} s simulated in {}\n", j["particles"].get<std::size_t>(),
+             j["steps"].get<std::uint64_t>(), j["time_s"].get<double>(), duration_text(j["elapsed_s"].get<double>()));
+  fmt::print("  mean stress              {:.6g} {}\n  void ratio               {:.5f}  (solid fraction {:.5f})\n",
+             j["mean_stress_Pa"].get<double>(), dimension == 3 ? "Pa" : "N/m", j["void_ratio"].get<double>(),
+             j["solid_fraction"].get<double>());
   fmt::print("  coordination Z, Z_m      {:.3f}, {:.3f}  (without rattlers {:.3f})\n", j["coordination"].get<double>(),
              j["mechanical_coordination"].get<double>(), j["backbone_coordination"].get<double>());
   fmt::print("  largest overlap          {:.3g} % of the smaller diameter\n", 100 * j["largest_overlap"].get<double>());
-  fmt::print("  time step                {:.4g} s, certified limit {:.4g} s ({} evaluations, {:.1f} % of the run time)\n", j["dt_s"].get<double>(),
-             j["dt_certified_s"].get<double>(), j["certificate_evaluations"].get<std::uint64_t>(), 100 * j["certificate_share"].get<double>());
+  fmt::print(
+      "  time step                {:.4g} s, certified limit {:.4g} s ({} evaluations, {:.1f} % of the run time)\n",
+      j["dt_s"].get<double>(), j["dt_certified_s"].get<double>(), j["certificate_evaluations"].get<std::uint64_t>(),
+      100 * j["certificate_share"].get<double>());
   fmt::print("written: {0}/history.csv, {0}/final.h5, {0}/final.vtp, {0}/result.json\n", folder.string());
 }
 
 int run_command(const RunFlags& flags) {
   if (flags.threads > 0) omp_set_num_threads(flags.threads);
-  const InputKind kind = kind_of(flags.input);
-  if (kind == InputKind::packing)
-    throw InputError(fmt::format("{}: is a packing, which has no stages to run; name it in a scene: [specimen] source = \"file\", path = \"{}\"",
-                                 flags.input, flags.input));
-  const bool resumed = kind == InputKind::snapshot;
-  Snapshot work = resumed ? read_snapshot(flags.input) : Snapshot{read_scene(flags.input), {}};
+  Snapshot work = read_input(flags.input, flags.settings);
+  const bool resumed = work.state.grains.size() > 0;
   const Scene& scene = work.scene;
   if (!resumed) work.state = make_specimen(scene);
   State& state = work.state;
   if (scene.stages.empty())
-    throw InputError(fmt::format("{}: has no [[stage]] to run; add one, or ask `eigengrain timestep {}`", scene.file, flags.input));
+    throw InputError(
+        fmt::format("{}: has no [[stage]] to run; add one, or ask `eigengrain timestep {}`", scene.file, flags.input));
   if (resumed && state.stage >= scene.stages.size())
     throw InputError(fmt::format("{}: this run is complete, there is nothing to go on with", flags.input));
 
   Recorder recorder(scene, state, result_folder(flags, resumed), resumed);
   Controller controller(scene);
   const auto begin = std::chrono::steady_clock::now();
-  const double stages = static_cast<double>(scene.stages.size());
-  Progress progress(scene.title, 100 * stages, "% of a stage");
+  Progress progress(scene.title, 0, "steps");
   RunObserver observer;
   catch_interrupts();
   observer.step = [&](const State& s, const RunStatus& status) {
-    progress.update(100 * (static_cast<double>(s.stage) + stage_share(s, status.stage).value_or(0)), [&] { return run_note(s, status); });
+    progress.update(static_cast<double>(s.step), run_share(scene, s), [&] { return run_note(scene, s, status); });
   };
   observer.record = [&](const State& s, const RunStatus& status) { recorder.row(s, status); };
   observer.snapshot = [&](const State& s) { recorder.snapshot(s, fmt::format("step_{:09d}", s.step)); };
   observer.stage_end = [&](const State& s, const StageSpec& stage) {
-    fmt::print("stage \"{}\" done: step {}, mean stress {:.6g}\n", stage.name, s.step, mean_stress(s));
+    progress.clear();
+    fmt::print(stderr, "stage \"{}\" done: step {}, mean stress {:.6g} {}\n", stage.name, s.step, mean_stress(s),
+               scene.dimension == 3 ? "Pa" : "N/m");
   };
   observer.stop = interrupted;
   bool complete = false;
@@ -161,8 +181,10 @@ int run_command(const RunFlags& flags) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const auto result = result_json(scene, state, controller.log(), seconds, recorder);
   std::ofstream(recorder.folder() / "result.json") << result.dump(2) << "\n";
-  if (flags.json) fmt::print("{}\n", result.dump(2));
-  else print_result(result, recorder.folder(), scene.dimension);
+  if (flags.json)
+    fmt::print("{}\n", result.dump(2));
+  else
+    print_result(result, recorder.folder(), scene.dimension);
   return 0;
 }
 
@@ -172,11 +194,13 @@ void add_run_command(CLI::App& app, Action& action) {
   auto* sub = app.add_subcommand("run", "run the stages of a scene, or go on from a snapshot");
   auto flags = std::make_shared<RunFlags>();
   sub->add_option("input", flags->input, "scene file (.toml), or snapshot (.h5) to go on from")->required();
+  add_settings_option(*sub, flags->settings);
   sub->add_option("--out", flags->out, "folder for results (default: out/<name of the scene>)");
   sub->add_flag("--overwrite", flags->overwrite, "replace the results of an earlier run");
   sub->add_flag("--json", flags->json, "print the result as JSON");
   sub->add_flag("--scalar", flags->scalar, "the reference force loop, one contact at a time");
-  sub->add_option("--threads", flags->threads, "threads (default: all; results do not depend on it)")->check(CLI::Range(1, 1024));
+  sub->add_option("--threads", flags->threads, "threads (default: all; results do not depend on it)")
+      ->check(CLI::Range(1, 1024));
   sub->callback([flags, &action] { action = [flags] { return run_command(*flags); }; });
 }
 

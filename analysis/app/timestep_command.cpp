@@ -21,6 +21,7 @@ namespace {
 
 struct TimestepFlags {
   std::string input, figure;
+  SceneSettings settings;
   BareFlags bare;
   bool verify = false, json = false, initial = false;
   double max_speed = Material::unset;
@@ -28,15 +29,10 @@ struct TimestepFlags {
 };
 
 Snapshot load(const TimestepFlags& flags) {
-  switch (kind_of(flags.input)) {
-    case InputKind::packing: return bare_packing(flags.input, flags.bare);
-    case InputKind::snapshot: {
-      Snapshot s = read_snapshot(flags.input);
-      return s;
-    }
-    default: break;
-  }
-  Snapshot s{read_scene(flags.input), {}};
+  if (kind_of(flags.input) == InputKind::packing && flags.settings.empty())
+    return bare_packing(flags.input, flags.bare);
+  Snapshot s = read_input(flags.input, flags.settings);
+  if (s.state.grains.size() > 0) return s;
   s.state = make_specimen(s.scene);
   if (!flags.initial && !s.scene.stages.empty()) run_quietly(s.scene, s.state);
   return s;
@@ -58,7 +54,8 @@ int timestep_command(const TimestepFlags& flags) {
   report.interval = step_interval(net);
   const Material& m = work.scene.materials.front();
   const auto known = [](double x) { return std::isnan(x) ? std::nullopt : std::optional<double>(x); };
-  report.estimates = time_step_estimates(net, {known(m.shear_modulus), known(m.poisson), known(m.density), known(flags.max_speed)});
+  report.estimates =
+      time_step_estimates(net, {known(m.shear_modulus), known(m.poisson), known(m.density), known(flags.max_speed)});
   if (report.interval.grain != no_index) {
     report.limiting_id = net.id[report.interval.grain];
     report.limiting_radius = net.radius[report.interval.grain];
@@ -77,8 +74,10 @@ int timestep_command(const TimestepFlags& flags) {
     if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path());
     write_figure(figure_of(report), flags.figure);
   }
-  if (flags.json) fmt::print("{}\n", json_of(report).dump(2));
-  else fmt::print("{}", text_of(report));
+  if (flags.json)
+    fmt::print("{}\n", json_of(report).dump(2));
+  else
+    fmt::print("{}", text_of(report));
   if (!flags.figure.empty()) fmt::print(stderr, "figure: {}\n", flags.figure);
   return 0;
 }
@@ -86,9 +85,13 @@ int timestep_command(const TimestepFlags& flags) {
 }  // namespace
 
 void add_timestep_command(CLI::App& app, Action& action) {
-  auto* sub = app.add_subcommand("timestep", "the proved interval of the critical time step, beside the rules of thumb");
+  auto* sub =
+      app.add_subcommand("timestep", "the proved interval of the critical time step, beside the rules of thumb");
   auto f = std::make_shared<TimestepFlags>();
-  sub->add_option("input", f->input, "scene (its stages are run first), snapshot (.h5) or packing (text: Lx Ly Lz, then x y z r)")->required();
+  sub->add_option("input", f->input,
+                  "scene (its stages are run first), snapshot (.h5) or packing (text: Lx Ly Lz, then x y z r)")
+      ->required();
+  add_settings_option(*sub, f->settings);
   sub->add_flag("--verify", f->verify, "bracket the limit by stepping a small perturbation, contacts held");
   sub->add_flag("--initial", f->initial, "of a scene: the specimen before its stages");
   sub->add_flag("--json", f->json, "print the report as JSON");
@@ -100,7 +103,8 @@ void add_timestep_command(CLI::App& app, Action& action) {
   sub->add_option("--friction", f->bare.friction, "friction coefficient of a bare packing [-]");
   sub->add_option("--normal-stiffness", f->bare.normal_stiffness, "kn of a bare packing, linear law [N/m]");
   sub->add_option("--shear-stiffness", f->bare.shear_stiffness, "ks of a bare packing, linear law [N/m]");
-  sub->add_option("--arms", f->bare.arms, "contact arms of a bare packing: overlap (R - d/2) or radius (R, as LAMMPS gran/*)");
+  sub->add_option("--arms", f->bare.arms,
+                  "contact arms of a bare packing: overlap (R - d/2) or radius (R, as LAMMPS gran/*)");
   sub->add_flag("--no-rotation", f->bare.no_rotation, "without rotational degrees of freedom");
   sub->add_option("--max-speed", f->max_speed, "largest relative speed at a contact, for Hertz's duration [m/s]");
   sub->add_option("--threads", f->threads, "threads (default: all)")->check(CLI::Range(1, 1024));

@@ -15,7 +15,8 @@ namespace {
 double reference(const StepInterval& v) { return 0.5 * (v.dt_safe + v.dt_limit_upper); }
 
 Table estimate_table(const TimestepReport& r) {
-  Table t({{"name", "estimate"}, {"dt", "step", "s"}, {"ratio", "over limit", "-"}, {"verdict"}, {"formula"}, {"source"}});
+  Table t(
+      {{"name", "estimate"}, {"dt", "step", "s"}, {"ratio", "over limit", "-"}, {"verdict"}, {"formula"}, {"source"}});
   for (const auto& e : r.estimates)
     t.add({e.name, e.dt, e.dt / reference(r.interval), verdict(e.dt, r.interval), e.formula, e.source});
   return t;
@@ -36,7 +37,8 @@ std::string text_of(const TimestepReport& r) {
   std::string out = fmt::format("{}{}\n", r.name, r.title.empty() ? "" : ": " + r.title);
   const auto line = [&](const char* key, const std::string& value) { out += fmt::format("  {:<24}{}\n", key, value); };
   line("particles", fmt::format("{} ({}D, {} rotation)", r.particles, r.dimension, r.rotation ? "with" : "without"));
-  line("contacts", fmt::format("{}, coordination {:.2f}, at most {}", r.contacts, s.coordination_mean, s.coordination_max));
+  line("contacts",
+       fmt::format("{}, coordination {:.2f}, at most {}", r.contacts, s.coordination_mean, s.coordination_max));
   line("mass", fmt::format("{:.4g} … {:.4g} kg", s.mass_min, s.mass_max));
   if (r.contacts == 0) {
     out += "\nNothing touches: no contact is stiff, so nothing limits the step here. Compress the packing first.\n";
@@ -49,34 +51,52 @@ std::string text_of(const TimestepReport& r) {
     return out;
   }
   out += "\n";
-  line("critical time step", fmt::format("{:.6g} … {:.6g} s   (width {:.2g} %)", v.dt_safe, v.dt_limit_upper, 100 * (v.dt_limit_upper / v.dt_safe - 1)));
+  line("critical time step", fmt::format("{:.6g} … {:.6g} s   (width {:.2g} %)", v.dt_safe, v.dt_limit_upper,
+                                         100 * (v.dt_limit_upper / v.dt_safe - 1)));
   line("  proved stable", fmt::format("{:.8g} s   by {}", v.dt_safe, v.method_upper));
   line("  proved unstable above", fmt::format("{:.8g} s   by {}", v.dt_limit_upper, v.method_lower));
   if (r.bracket)
-    line("  found by stepping", fmt::format("{:.6g} s runs, {:.6g} s blows up   ({} steps)", r.bracket->stable, r.bracket->unstable, r.bracket->steps));
-  line("limiting particle", fmt::format("id {}, radius {:.4g} m, {} contacts, {:.1f} % of the mode", r.limiting_id, r.limiting_radius, v.coordination, 100 * v.grain_share));
+    line("  found by stepping", fmt::format("{:.6g} s runs, {:.6g} s blows up   ({} steps)", r.bracket->stable,
+                                            r.bracket->unstable, r.bracket->steps));
+  line("limiting particle", fmt::format("id {}, radius {:.4g} m, {} contacts, {:.1f} % of the mode", r.limiting_id,
+                                        r.limiting_radius, v.coordination, 100 * v.grain_share));
   line("grains in the mode", fmt::format("{:.1f} (participation number)", v.participation));
   out += fmt::format("\n{}", estimate_table(r).text());
-  out += fmt::format("\nstep = 2/ω_max for undamped motion with the contacts as they are; {}\n", duration_text(r.elapsed));
+  out +=
+      fmt::format("\nstep = 2/ω_max for undamped motion with the contacts as they are; {}\n", duration_text(r.elapsed));
   return out;
 }
 
 nlohmann::json json_of(const TimestepReport& r) {
   const auto& v = r.interval;
   const auto number = [](double x) { return std::isfinite(x) ? nlohmann::json(x) : nlohmann::json(nullptr); };
-  nlohmann::json j{{"input", r.name}, {"title", r.title}, {"dimension", r.dimension}, {"rotation", r.rotation},
-                   {"particles", r.particles}, {"contacts", r.contacts}, {"lambda_lower", v.lambda_lower}, {"lambda_upper", v.lambda_upper},
-                   {"dt_safe", number(v.dt_safe)}, {"dt_limit_upper", number(v.dt_limit_upper)},
-                   {"methods", {{"lower", v.method_lower}, {"upper", v.method_upper}, {"products", v.products}, {"residual", v.residual}}},
-                   {"participation", v.participation}, {"elapsed_s", r.elapsed}};
+  nlohmann::json j{
+      {"input", r.name},
+      {"title", r.title},
+      {"dimension", r.dimension},
+      {"rotation", r.rotation},
+      {"particles", r.particles},
+      {"contacts", r.contacts},
+      {"lambda_lower", v.lambda_lower},
+      {"lambda_upper", v.lambda_upper},
+      {"dt_safe", number(v.dt_safe)},
+      {"dt_limit_upper", number(v.dt_limit_upper)},
+      {"methods",
+       {{"lower", v.method_lower}, {"upper", v.method_upper}, {"products", v.products}, {"residual", v.residual}}},
+      {"participation", v.participation},
+      {"elapsed_s", r.elapsed}};
   const auto& s = r.summary;
   j["mass_kg"] = {s.mass_min, s.mass_max};
   j["normal_stiffness_N_per_m"] = {s.normal_min, s.normal_max};
   j["tangential_stiffness_N_per_m"] = {s.tangential_min, s.tangential_max};
   j["limiting_particle"] = r.limiting_id == no_index ? nlohmann::json(nullptr)
-                                                     : nlohmann::json{{"id", r.limiting_id}, {"radius_m", r.limiting_radius},
-                                                                      {"coordination", v.coordination}, {"share", v.grain_share}};
-  if (r.bracket) j["verification"] = {{"dt_stable", r.bracket->stable}, {"dt_unstable", r.bracket->unstable}, {"steps", r.bracket->steps}};
+                                                     : nlohmann::json{{"id", r.limiting_id},
+                                                                      {"radius_m", r.limiting_radius},
+                                                                      {"coordination", v.coordination},
+                                                                      {"share", v.grain_share}};
+  if (r.bracket)
+    j["verification"] = {
+        {"dt_stable", r.bracket->stable}, {"dt_unstable", r.bracket->unstable}, {"steps", r.bracket->steps}};
   j["estimates"] = estimate_table(r).json();
   return j;
 }
@@ -86,8 +106,8 @@ Figure figure_of(const TimestepReport& r) {
   for (const auto& e : r.estimates) rows.push_back({e.name, e.dt / r.interval.dt_limit_upper});
   Figure figure = limit_chart(rows, r.interval.dt_safe / r.interval.dt_limit_upper);
   figure.title = r.title.empty() ? r.name : r.title;
-  figure.subtitle = fmt::format("{} particles, {} contacts; exact limit {:.4g} … {:.4g} s, proved", r.particles, r.contacts,
-                                r.interval.dt_safe, r.interval.dt_limit_upper);
+  figure.subtitle = fmt::format("{} particles, {} contacts; exact limit {:.4g} … {:.4g} s, proved", r.particles,
+                                r.contacts, r.interval.dt_safe, r.interval.dt_limit_upper);
   return figure;
 }
 

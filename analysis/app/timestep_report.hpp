@@ -19,10 +19,10 @@ struct TimestepReport {
   NetworkSummary summary;
   StepInterval interval;
   Index limiting_id = no_index;
-  double limiting_radius = 0;          ///< [m]
+  double limiting_radius = 0;  ///< [m]
   std::vector<Estimate> estimates;
   std::optional<StabilityBracket> bracket;
-  double elapsed = 0;                  ///< [s]
+  double elapsed = 0;  ///< [s]
 };
 
 /// Stands beside each estimate: "stable", "UNSTABLE", "7.2 times too small"; against the interval of the limit.

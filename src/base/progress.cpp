@@ -9,6 +9,13 @@
 
 namespace eg {
 
+namespace {
+
+/// Three digits, without an exponent where they are whole.
+std::string count_text(double x) { return x < 1000 ? fmt::format("{:.3g}", x) : fmt::format("{:.0f}", x); }
+
+}  // namespace
+
 std::string duration_text(double seconds) {
   if (seconds < 9.95) return fmt::format("{:.2g} s", seconds);
   const auto whole = std::llround(seconds);
@@ -31,21 +38,21 @@ Progress::Progress(std::string label, double total, std::string unit, Style styl
 void Progress::every(double first, double interval) { next_ = first, interval_ = interval; }
 
 std::string Progress::line(double seconds, const std::string& note) const {
-  const double rate = seconds > 0 ? done_ / seconds : 0;
+  const double rate = seconds > 0 ? (done_ - first_done_) / seconds : 0;
   std::string text = label_;
-  if (total_ > 0) {
-    const double share = std::clamp(done_ / total_, 0.0, 1.0);
+  if (share_ >= 0) {
+    const double share = std::clamp(share_, 0.0, 1.0), gained = share - first_share_;
     if (style_ == Style::bar) {
       constexpr int width = 24;
       const auto filled = static_cast<int>(share * width);
       text += fmt::format(" [{:=<{}}{: <{}}]", "", filled, "", width - filled);
     }
     text += fmt::format(" {:3.0f} %", std::floor(100 * share));
-    if (share > 0) text += fmt::format("  {} left", duration_text(seconds * (1 - share) / share));
+    if (gained > 0) text += fmt::format("  {} left", duration_text(seconds * (1 - share) / gained));
   } else {
     text += fmt::format(" {:.0f} {}", done_, unit_);
   }
-  text += fmt::format("  {:.3g} {}/s", rate, unit_);
+  text += fmt::format("  {} {}/s", count_text(rate), unit_);
   if (!note.empty()) text += "  " + note;
   return text;
 }
@@ -62,6 +69,13 @@ void Progress::draw(const std::string& note) {
   any_ = true;
   next_ = seconds + interval_;
   if (style_ == Style::lines) interval_ = std::min(2 * interval_, 60.0);
+}
+
+void Progress::clear() {
+  if (style_ != Style::bar || shown_ == 0) return;
+  fmt::print(out_, "\r{:<{}}\r", "", shown_);
+  std::fflush(out_);
+  shown_ = 0;
 }
 
 void Progress::finish() {

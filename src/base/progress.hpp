@@ -4,6 +4,7 @@
 #include <concepts>
 #include <cstdio>
 #include <string>
+#include <utility>
 
 namespace eg {
 
@@ -31,9 +32,19 @@ class Progress {
   }
   template <std::invocable Note>
   void update(double done, Note&& note) {
-    done_ = done;
+    update(done, total_ > 0 ? done / total_ : unknown, std::forward<Note>(note));
+  }
+  /// For work whose end is told by something else than its count: `share` of the whole [0, 1], `unknown` if it cannot
+  /// be told. Rate and time left refer to what was done since the first call, so a resumed run may begin anywhere.
+  template <std::invocable Note>
+  void update(double done, double share, Note&& note) {
+    if (!begun_) begun_ = true, first_done_ = total_ > 0 ? 0 : done, first_share_ = total_ > 0 ? 0 : share;
+    done_ = done, share_ = share;
     if (due()) draw(note());
   }
+  static constexpr double unknown = -1;
+  /// Wipes the bar, so that something else can be printed on its line.
+  void clear();
   /// Ends the bar with a last line of the time taken, if anything was shown. Further calls do nothing.
   void finish();
 
@@ -51,7 +62,9 @@ class Progress {
   std::string line(double seconds, const std::string& note) const;
 
   std::string label_, unit_;
-  double total_, done_ = 0;
+  double total_, done_ = 0, share_ = unknown;
+  double first_done_ = 0, first_share_ = 0;  ///< at the first update
+  bool begun_ = false;
   Style style_;
   std::FILE* out_;
   Clock::time_point start_ = Clock::now();

@@ -15,6 +15,10 @@ struct HertzMindlinLaw {
   static constexpr std::string_view name = unloading == Unloading::keep ? "hertz-mindlin" : "hertz-mindlin-rescale";
   static constexpr std::size_t history_vectors = 1, history_scalars = unloading == Unloading::rescale ? 1 : 0;
 
+  static std::vector<ConstantSet> constant_sets() {
+    return {{{"shear_modulus", &Material::shear_modulus}, {"poisson", &Material::poisson}}};
+  }
+
   template <class S>
   struct Constants {
     S e_star, g_star, friction;

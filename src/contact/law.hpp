@@ -52,6 +52,8 @@ struct Response {
 /// A law has
 /// - name, history_vectors (3-vectors in the contact plane that turn with it, the first one the shear force T) and
 ///   history_scalars; history is stored in this order;
+/// - constant_sets(): the material constants that it needs; every material of a scene gives exactly one of the sets, in
+///   full, and all materials the same one;
 /// - Constants<S>: what two materials give, all of type S, independent of radii; constants(a, b, dimension) makes them;
 /// - Pair<S>: constants of one contact, made of Constants and Sizes;
 /// - normal(pair, overlap) for overlap ≥ 0, zero force at 0;
@@ -62,6 +64,7 @@ concept ContactLaw = requires(const Material& m, const typename L::template Cons
                               const typename L::template Pair<double>& p, double x, const Strain<double>& s,
                               std::array<double, L::history_vectors * 3 + L::history_scalars>& h) {
   { L::name } -> std::convertible_to<std::string_view>;
+  { L::constant_sets() } -> std::same_as<std::vector<ConstantSet>>;
   { L::constants(m, m, 3) } -> std::same_as<typename L::template Constants<double>>;
   { L::template pair<double>(c, Sizes<double>{x, x, x}) } -> std::same_as<typename L::template Pair<double>>;
   { L::template normal<double>(p, x) } -> std::same_as<NormalResponse<double>>;
@@ -101,6 +104,7 @@ struct Frictionless {
   using Constants = typename Law::template Constants<S>;
   template <class S>
   using Pair = typename Law::template Pair<S>;
+  static std::vector<ConstantSet> constant_sets() { return Law::constant_sets(); }
   static auto constants(const Material& a, const Material& b, int dimension) { return Law::constants(a, b, dimension); }
   template <class S>
   EG_INLINE static Pair<S> pair(const Constants<S>& c, const Sizes<S>& sizes) {

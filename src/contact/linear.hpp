@@ -12,6 +12,11 @@ struct Linear {
   static constexpr std::string_view name = "linear";
   static constexpr std::size_t history_vectors = 1, history_scalars = 0;
 
+  static std::vector<ConstantSet> constant_sets() {
+    return {{{"normal_stiffness", &Material::normal_stiffness}, {"shear_stiffness", &Material::shear_stiffness}},
+            {{"effective_modulus", &Material::effective_modulus}, {"stiffness_ratio", &Material::stiffness_ratio}}};
+  }
+
   template <class S>
   struct Constants {
     S kn;          ///< [N/m], 0 by deformability

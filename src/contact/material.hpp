@@ -1,5 +1,7 @@
 #pragma once
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace eg {
 
@@ -16,5 +18,13 @@ struct Material {
   double effective_modulus = unset;  ///< E* [Pa], linear law by deformability
   double stiffness_ratio = unset;    ///< k* = kn/ks [-], linear law by deformability
 };
+
+/// A constant of a material by its name in the scene file.
+struct MaterialConstant {
+  std::string_view key;
+  double Material::*value;
+};
+/// Constants that a law can work from when all of them are given.
+using ConstantSet = std::vector<MaterialConstant>;
 
 }  // namespace eg

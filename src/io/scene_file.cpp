@@ -4,8 +4,10 @@
 
 #include <cmath>
 #include <filesystem>
+#include <sstream>
 
 #include "contact/laws.hpp"
+#include "io/scene_settings.hpp"
 #include "io/stage_reader.hpp"
 #include "io/text_file.hpp"
 #include "io/toml_parse.hpp"
@@ -40,42 +42,34 @@ Material read_material(const std::string& name, const TomlReader& t) {
   return m;
 }
 
-struct Constant {
-  std::string_view key;
-  double Material::*value;
-};
-using Constants = std::array<Constant, 2>;
-
-/// The sets of material constants that a law can work from: each material must give one of them in full.
-std::vector<Constants> alternatives_of(std::string_view law) {
-  if (law == Linear::name)
-    return {{{{"normal_stiffness", &Material::normal_stiffness}, {"shear_stiffness", &Material::shear_stiffness}}},
-            {{{"effective_modulus", &Material::effective_modulus}, {"stiffness_ratio", &Material::stiffness_ratio}}}};
-  return {{{{"shear_modulus", &Material::shear_modulus}, {"poisson", &Material::poisson}}}};
+std::string joined(const ConstantSet& set) {
+  std::string text;
+  for (const auto& c : set) text += fmt::format("{}{}", text.empty() ? "" : " and ", c.key);
+  return text;
 }
 
-bool given(const Material& m, const Constant& c) { return !std::isnan(m.*c.value); }
+bool given(const Material& m, const MaterialConstant& c) { return !std::isnan(m.*c.value); }
 
 /// Number of the set of constants that the material gives; throws when it gives none or several.
 std::size_t constants_given(const Material& m, const TomlReader& t, const std::string& law) {
-  const auto sets = alternatives_of(law);
+  std::vector<ConstantSet> sets;
+  with_law(law, [&](auto l) { sets = l.constant_sets(); });
   std::size_t found = sets.size();
   for (std::size_t k = 0; k < sets.size(); ++k) {
-    const auto& [first, second] = sets[k];
-    if (!given(m, first) && !given(m, second)) continue;
-    const auto& any = given(m, first) ? first : second;
+    const auto is_given = [&](const MaterialConstant& c) { return given(m, c); };
+    const auto any = std::ranges::find_if(sets[k], is_given);
+    if (any == sets[k].end()) continue;
     if (found < sets.size())
-      throw t.error(any.key, fmt::format("contradicts {}", sets[found][0].key), "keep one pair of the two");
-    const auto& lacking = given(m, first) ? second : first;
-    if (!given(m, lacking))
-      throw t.error(any.key, fmt::format("needs {} beside it for the law \"{}\"", lacking.key, law),
-                    fmt::format("add {}", lacking.key));
+      throw t.error(any->key, fmt::format("contradicts {}", sets[found][0].key), "keep one set of the two");
+    const auto lacking = std::ranges::find_if_not(sets[k], is_given);
+    if (lacking != sets[k].end())
+      throw t.error(any->key, fmt::format("needs {} beside it for the law \"{}\"", lacking->key, law),
+                    fmt::format("add {}", lacking->key));
     found = k;
   }
   if (found < sets.size()) return found;
   std::string remedy;
-  for (const auto& set : sets)
-    remedy += fmt::format("{}{} and {}", remedy.empty() ? "add " : ", or ", set[0].key, set[1].key);
+  for (const auto& set : sets) remedy += fmt::format("{}{}", remedy.empty() ? "add " : ", or ", joined(set));
   throw t.error("", fmt::format("lacks the constants of the law \"{}\"", law), remedy);
 }
 
@@ -113,6 +107,17 @@ void check_passing(const TomlReader& t, const Grading& g) {
     throw t.error("passing", "must run from passing 0 to passing 1", "write fractions of the mass, not per cent");
 }
 
+Grading::Kind kind_of_grading(const TomlReader& t) {
+  const bool table = t.has("passing"), single = t.has("radius"), least = t.has("min_radius"),
+             most = t.has("max_radius");
+  const bool uniform = least || most;
+  t.finish();
+  constexpr std::string_view remedy = "give radius, or min_radius and max_radius, or passing";
+  if (!table && !single && !uniform) throw t.error("", "holds no sizes", remedy);
+  if (table + single + uniform > 1) throw t.error(single ? "radius" : "passing", "is not the only size given", remedy);
+  return table ? Grading::Kind::table : single ? Grading::Kind::single : Grading::Kind::uniform;
+}
+
 Grading read_grading(const TomlReader& specimen) {
   if (specimen.is_text("grading")) {
     std::string name;
@@ -121,18 +126,22 @@ Grading read_grading(const TomlReader& specimen) {
   }
   const auto t = *specimen.table("grading", required);
   Grading g;
-  if (t.pairs("passing", g.passing)) {
-    check_passing(t, g);
-    g.kind = Grading::Kind::table;
-    g.min_radius = g.passing.front()[0] / 2, g.max_radius = g.passing.back()[0] / 2;
-  } else if (t.number("radius", g.min_radius, positive)) {
-    g.kind = Grading::Kind::single;
-    g.max_radius = g.min_radius;
-  } else {
-    g.kind = Grading::Kind::uniform;
-    t.number("min_radius", g.min_radius, positive, required);
-    t.number("max_radius", g.max_radius, positive, required);
-    if (g.max_radius < g.min_radius) throw t.error("max_radius", "must not be below min_radius");
+  g.kind = kind_of_grading(t);
+  switch (g.kind) {
+    case Grading::Kind::table:
+      t.pairs("passing", g.passing);
+      check_passing(t, g);
+      g.min_radius = g.passing.front()[0] / 2, g.max_radius = g.passing.back()[0] / 2;
+      break;
+    case Grading::Kind::single:
+      t.number("radius", g.min_radius, positive);
+      g.max_radius = g.min_radius;
+      break;
+    case Grading::Kind::uniform:
+      t.number("min_radius", g.min_radius, positive, required);
+      t.number("max_radius", g.max_radius, positive, required);
+      if (g.max_radius < g.min_radius) throw t.error("max_radius", "must not be below min_radius");
+      break;
   }
   t.finish();
   return g;
@@ -219,6 +228,8 @@ void read_boundary(const TomlReader& t, Scene& scene) {
     b.wall_material = scene.materials[0].name;
     t.choice("wall_material", b.wall_material, material_names(scene),
              scene.materials.size() > 1 ? required : Need::optional);
+  } else if (t.has("wall_material")) {
+    throw t.error("wall_material", "is read with type = \"box\" only", "remove one of the two");
   }
   if (b.kind == Kind::periodic && t.has("wall"))
     throw t.error("wall", "cannot stand in a cell that is periodic in every direction",
@@ -261,6 +272,7 @@ void read_stages(const TomlReader& top, Scene& scene) {
 }
 
 void read_top(const TomlReader& top, Scene& scene) {
+  top.has("settings");  // applied already
   top.text("title", scene.title);
   top.integer("dimension", scene.dimension, closed(2, 3), required);
   top.flag("rotation", scene.rotation);
@@ -280,19 +292,41 @@ void read_top(const TomlReader& top, Scene& scene) {
   top.finish();
 }
 
+/// `settings` of the file, or those from outside.
+void apply_settings(toml::table& table, const std::string& file, SceneSettings settings) {
+  const TomlReader top(table, file, "");
+  if (top.has("settings") && !settings.empty())
+    throw top.error("settings", "are in the scene already", "add yours to that line of the file");
+  top.texts("settings", settings);
+  for (const auto& setting : settings) apply_setting(table, setting, file);
+}
+
+std::string with_settings(std::string_view text, const SceneSettings& settings) {
+  if (settings.empty()) return std::string(text);
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  toml::array list;
+  for (const auto& setting : settings) list.push_back(setting);
+  std::ostringstream line;
+  line << "settings = " << toml::toml_formatter(list, toml::format_flags::none) << "\n";
+  return line.str() + std::string(text);
+}
+
 }  // namespace
 
-Scene parse_scene(std::string_view text, const std::string& file) {
+Scene parse_scene(std::string_view text, const std::string& file, const SceneSettings& settings) {
   Scene scene;
   scene.file = file;
-  scene.text = text;
-  const toml::table table = parse_toml(text, file);
+  scene.text = with_settings(text, settings);
+  toml::table table = parse_toml(text, file);
   if (table.empty()) throw input_error(file, 0, "is an empty scene:", "it holds no keys", "see cases/ for examples");
+  apply_settings(table, file, settings);
   read_top(TomlReader(table, file, ""), scene);
   return scene;
 }
 
-Scene read_scene(const std::string& path) { return parse_scene(read_file(path), path); }
+Scene read_scene(const std::string& path, const SceneSettings& settings) {
+  return parse_scene(read_file(path), path, settings);
+}
 
 std::string resolve_path(const Scene& scene, const std::string& path) {
   return (std::filesystem::path(scene.file).parent_path() / path).string();

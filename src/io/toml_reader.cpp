@@ -219,6 +219,13 @@ bool TomlReader::choices(std::string_view key, std::vector<std::string>& out, co
   return true;
 }
 
+bool TomlReader::texts(std::string_view key, std::vector<std::string>& out) const {
+  const toml::array* all = array(key, Need::optional);
+  if (!all) return false;
+  for (std::size_t k = 0; k < all->size(); ++k) out.push_back(checked_text(*all->get(k), element(key, k)));
+  return true;
+}
+
 std::optional<TomlReader> TomlReader::table(std::string_view key, Need need) const {
   const toml::node* node = find(key, need);
   if (!node) return {};
@@ -245,8 +252,11 @@ std::vector<TomlReader> TomlReader::tables(std::string_view key) const {
 std::vector<std::pair<std::string, TomlReader>> TomlReader::named_tables() const {
   std::vector<const toml::key*> keys;
   for (const auto& [key, value] : *table_) keys.push_back(&key);
-  std::ranges::sort(
-      keys, {}, [](const toml::key* key) { return std::pair(key->source().begin.line, key->source().begin.column); });
+  const auto place = [](const toml::key* key) {  // what a setting added has no line and comes last
+    const auto& begin = key->source().begin;
+    return std::pair(begin.line > 0 ? begin.line : std::numeric_limits<toml::source_index>::max(), begin.column);
+  };
+  std::ranges::stable_sort(keys, {}, place);
   std::vector<std::pair<std::string, TomlReader>> all;
   for (const auto* key : keys) all.emplace_back(std::string(key->str()), *table(key->str()));
   return all;

@@ -48,6 +48,8 @@ class TomlReader {
   TomlReader(const toml::table& table, std::string file, std::string path)
       : table_(&table), file_(std::move(file)), path_(std::move(path)) {}
 
+  /// Asking is enough to make a key known: a reader that chooses between keys asks for all of them first, so that
+  /// messages about misspelt, missing and unknown keys know them all.
   bool has(std::string_view key) const { return find(key) != nullptr; }
   bool number(std::string_view key, double& out, const Range& = any_number, Need = Need::optional) const;
   bool number(std::string_view key, std::optional<double>& out, const Range&) const;
@@ -83,6 +85,8 @@ class TomlReader {
   /// An array of texts out of `names`.
   bool choices(std::string_view key, std::vector<std::string>& out, const std::vector<std::string>& names,
                Need = Need::optional) const;
+  /// An array of texts.
+  bool texts(std::string_view key, std::vector<std::string>& out) const;
   std::optional<TomlReader> table(std::string_view key, Need = Need::optional) const;
   /// The tables of an array of tables, [[key]].
   std::vector<TomlReader> tables(std::string_view key) const;

@@ -95,7 +95,7 @@ const std::vector<SceneCase> scene_cases{
     {1, "dimension = 3\nspeed = 1", "s.toml:2: speed is not a known key; did you mean \"seed\"?"},
     {1, "dimension = 3\nqwertyuiop = 1",
      "s.toml:2: qwertyuiop is not a known key; known here: boundary, contact, damping, dimension, gravity, material, "
-     "record, rotation, seed, specimen, stage, timestep, title"},
+     "record, rotation, seed, settings, specimen, stage, timestep, title"},
     {7, "[contct]", "s.toml:7: contct is not a known key; did you mean \"contact\"?"},
     {11, "count = 100\ncells = [1, 1, 1]",
      "s.toml:12: specimen.cells is not a known key; known here: aspect, count, grading, solid_fraction, source"},
@@ -170,6 +170,17 @@ const std::vector<SceneCase> scene_cases{
     {10, "source = \"lattice\"\nlattice = \"fcc\"\ncells = [100000, 100000, 1]",
      "s.toml:12: specimen.cells make more than 500 million cells"},
     {10, "source = \"file\"", "s.toml:9: specimen.path is missing; add \"path\" to [specimen]"},
+    {12, "grading = { max_radius = 1e-3 }",
+     "s.toml:12: specimen.grading.min_radius is missing; add \"min_radius\" to [specimen.grading]"},
+    {12, "grading = { diameter = 1e-3 }",
+     "s.toml:12: specimen.grading.diameter is not a known key; known here: max_radius, min_radius, passing, radius"},
+    {12, "grading = {}",
+     "s.toml:12: specimen.grading holds no sizes; give radius, or min_radius and max_radius, or passing"},
+    {12, "grading = { radius = 1e-3, max_radius = 1e-3 }",
+     "s.toml:12: specimen.grading.radius = 0.001 is not the only size given; give radius, or min_radius and "
+     "max_radius, or passing"},
+    {14, "type = \"free\"\nwall_material = \"quartz\"",
+     "s.toml:15: boundary.wall_material = \"quartz\" is read with type = \"box\" only; remove one of the two"},
     {12, "grading = { min_radius = 2e-3, max_radius = 1e-3 }",
      "s.toml:12: specimen.grading.max_radius = 0.001 must not be below min_radius"},
     {12, "grading = { passing = [[1e-3, 0], [1e-3, 1]] }",
@@ -223,7 +234,7 @@ const std::string soft = "[material.soft]\ndensity = 1\nfriction = 0\nnormal_sti
 
 const std::vector<SceneCase> plane_cases{
     {0, plane + soft + "effective_modulus = 1\nstiffness_ratio = 1\n",
-     "s.toml:10: material.soft.effective_modulus = 1 contradicts normal_stiffness; keep one pair of the two"},
+     "s.toml:10: material.soft.effective_modulus = 1 contradicts normal_stiffness; keep one set of the two"},
     {0, plane + soft + "[material.hard]\ndensity = 1\nfriction = 0\neffective_modulus = 1\nstiffness_ratio = 1\n",
      "s.toml:10: material.hard gives other constants than material.soft; describe all materials by the same constants"},
     {0, plane + soft + "[[stage]]\nname = \"a\"\nstrain_rate = { z = 1 }\nuntil = { steps = 1 }\n",
@@ -271,6 +282,47 @@ const std::vector<PackingCase> packing_cases{
      "7zXZ...",
      "p.txt: is packed by xz, but a packing is plain text; unpack it first: unxz FILE"},
 };
+
+struct SettingCase {
+  std::string setting, message;
+};
+
+const std::vector<SettingCase> setting_cases{
+    {"specimen.count",
+     "s.toml: the setting \"specimen.count\" has no value; write KEY=VALUE, for example "
+     "specimen.count=300"},
+    {"specimen.count=",
+     "s.toml: the setting \"specimen.count=\" has no TOML value after \"=\"; write a number, true, "
+     "false, [list], {table} or \"text\""},
+    {"=3", "s.toml: the setting \"=3\" has no dotted path of keys before \"=\"; write for example specimen.count=300"},
+    {"specimen..count=3",
+     "s.toml: the setting \"specimen..count=3\" has no dotted path of keys before \"=\"; write for "
+     "example specimen.count=300"},
+    {"specimen.count=3\nseed=4",
+     "s.toml: the setting \"specimen.count=3?seed=4\" holds more than one value; give every "
+     "setting a --set of its own"},
+    {"stage[0].name=a",
+     "s.toml: the setting \"stage[0].name=a\" has an index that is not a number from 1; write "
+     "stage[1] for the first stage"},
+    {"stage[2].name=a", "s.toml: the setting \"stage[2].name=a\" asks for element 2 of 1; count from 1"},
+    {"stage.name=a", "s.toml: the setting \"stage.name=a\" does not say which \"stage\"; write stage[1]"},
+    {"specimen[1]=a",
+     "s.toml: the setting \"specimen[1]=a\" takes \"specimen\" for an array, which it is not; leave the "
+     "index out"},
+    {"dimension.x=3",
+     "s.toml: the setting \"dimension.x=3\" takes \"dimension\" for a table, which it is not; shorten "
+     "the path"},
+    {"specimen.cout=3", "s.toml: specimen.cout is not a known key; did you mean \"count\"?"},
+    {"specimen.count=0", "s.toml: specimen.count = 0 must lie in [1, 4000000000]"},
+    {"specimen.grading={radus=1}", "s.toml: specimen.grading.radus is not a known key; did you mean \"radius\"?"},
+};
+
+TEST(BadInputs, Settings) {
+  for (const auto& c : setting_cases)
+    EXPECT_EQ(message_of([&] { eg::parse_scene(scene_with(1, good_scene[0]), "s.toml", {c.setting}); }), c.message);
+  EXPECT_EQ(message_of([&] { eg::parse_scene(scene_with(1, "settings = []\ndimension = 3"), "s.toml", {"seed=1"}); }),
+            "s.toml:1: settings are in the scene already; add yours to that line of the file");
+}
 
 TEST(BadInputs, Packings) {
   for (const auto& c : packing_cases)

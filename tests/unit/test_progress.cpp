@@ -77,6 +77,37 @@ TEST(Progress, UnknownTotalShowsCountOnly) {
   EXPECT_EQ(text.find("left"), std::string::npos);
 }
 
+TEST(Progress, ShareBesideTheCount) {
+  const auto text = written([](std::FILE* out) {
+    Progress progress("run", 0, "steps", Progress::Style::lines, out);
+    progress.every(1e9, 1e9);
+    const auto note = [] { return std::string(); };
+    progress.update(9e9, 0.5, note);  // a resumed run begins far from zero: its rate and time left do not count that
+    progress.every(0, 1e9);
+    progress.update(9e9, 0.75, note);
+    progress.every(0, 1e9);
+    progress.update(9e9 + 1, Progress::unknown, note);
+  });
+  EXPECT_EQ(text.substr(0, 9), "run  75 %");
+  EXPECT_NE(text.find(" left  0 steps/s\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\nrun 9000000001 steps  "), std::string::npos) << text;
+}
+
+TEST(Progress, ClearLeavesAnEmptyLine) {
+  const auto text = written([](std::FILE* out) {
+    Progress progress("x", 4, "u", Progress::Style::bar, out);
+    progress.clear();  // nothing shown yet
+    progress.every(0, 1e9);
+    progress.update(2);
+    progress.clear();
+    std::fputs("note\n", out);
+  });
+  const auto end = text.find("\rnote\n");
+  ASSERT_NE(end, std::string::npos) << text;
+  EXPECT_EQ(text.rfind("\r", end - 1) + 1, text.find_last_not_of(' ', end - 1) + 1) << text;
+  EXPECT_EQ(text[0], '\r');
+}
+
 TEST(Progress, BarCoversTheLineBefore) {
   const auto text = written([](std::FILE* out) {
     Progress progress("x", 4, "u", Progress::Style::bar, out);

@@ -195,6 +195,30 @@ TEST(SceneFile, TextsAndCommentsMayHoldAnyLetter) {
   EXPECT_TRUE(scene.text.starts_with(start));
 }
 
+TEST(SceneFile, SettingsReplaceAddAndStayWithTheText) {
+  const auto scene = eg::parse_scene(
+      triaxial, "a.toml",
+      {"specimen.count = 300", "gravity[3]=-1", "contact.law=hertz-mindlin", "stage[1].until = { steps = 5 }",
+       "stage[1].record.every_steps=2", "title=\"\u00b5 = 'x'\"", "material.coal={density=1, friction=0}",
+       "material.coal.shear_modulus=1e9", "material.coal.poisson=0.1"});
+  const auto again = eg::parse_scene(scene.text, "b.toml");
+  for (const auto& s : {scene, again}) {
+    EXPECT_EQ(s.specimen.count, 300u);
+    EXPECT_EQ(s.gravity.z, -1);
+    EXPECT_EQ(s.contact.law, "hertz-mindlin");
+    EXPECT_EQ(s.stages[0].until_steps, 5);
+    EXPECT_TRUE(std::isnan(s.stages[0].until_stress_error));
+    EXPECT_EQ(s.stages[0].record_every_steps, 2);
+    EXPECT_EQ(s.title, "\u00b5 = 'x'");
+    ASSERT_EQ(s.materials.size(), 3u);
+    EXPECT_EQ(s.materials[0].name, "quartz");  // what a setting adds comes last
+    EXPECT_EQ(s.materials[2].name, "coal");
+    EXPECT_EQ(s.seed, 7u);
+  }
+  EXPECT_EQ(scene.text, again.text);
+  EXPECT_TRUE(scene.text.ends_with(triaxial));
+}
+
 TEST(SceneFile, ReadsEveryCaseOfTheProject) {
   int cases = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(EIGENGRAIN_SOURCE_DIR "/cases"))
