@@ -175,7 +175,7 @@ void read_lattice(const TomlReader& t, int dimension, SpecimenSpec& s) {
 void read_cloud(const TomlReader& t, int dimension, SpecimenSpec& s) {
   t.integer("count", s.count, closed(1, 4e9), required);
   s.grading = read_grading(t);
-  t.number("solid_fraction", s.solid_fraction, open(0, 0.7));
+  t.number("solid_fraction", s.solid_fraction, open(0, dimension == 3 ? 0.7 : 0.9));  // below dense packings
   t.numbers("aspect", std::span(s.aspect).first(static_cast<std::size_t>(dimension)), positive);
 }
 
