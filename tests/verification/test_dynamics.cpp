@@ -9,7 +9,9 @@
 #include "contact/laws.hpp"
 #include "dynamics/engine.hpp"
 #include "state/gather.hpp"
+#include "assembly/linearise.hpp"
 #include "support/scenes.hpp"
+#include "timestep/interval.hpp"
 
 using namespace eg;
 
@@ -261,5 +263,55 @@ INSTANTIATE_TEST_SUITE_P(Lattices, Stability,
                                            LatticeLimit{"hexagonal", {12, 6, 1}, .4082483, .6666667},
                                            LatticeLimit{"square", {6, 6, 1}, .5, .7071068}),
                          [](const auto& info) { return info.param.lattice; });
+
+/// Growth of the difference of two runs, one of them faintly disturbed: the linear response of the solver about its own
+/// motion, whatever forces are still unbalanced.
+bool difference_grows(const Scene& scene, const State& start, double dt) {
+  State a = start, b = start;
+  Random random(3);
+  for (auto& v : b.grains.velocity) v.set(v.vec() + Vec3{random.normal(), random.normal(), random.normal()} * 1e-10);
+  Engine run_a(scene, a), run_b(scene, b);
+  const auto difference = [&] {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.grains.size(); ++i) {
+      const Vec3 d = a.grains.velocity[i].vec() - b.grains.velocity[i].vec();
+      sum += dot(d, d) / a.grains.velocity[i].w;
+    }
+    return std::sqrt(sum);
+  };
+  const double before = difference();
+  for (int k = 0; k < 1500; ++k) {
+    run_a.step(dt, TallyLevel::none), run_b.step(dt, TallyLevel::none);
+    if (k % 10 == 0 && !(difference() < 1e4 * before)) return true;
+  }
+  return false;
+}
+
+TEST(Stability, BisectedStepEqualsTwoOverOmegaOnRandomPackings) {
+  for (const std::string law : {"linear", "hertz-mindlin"})
+    for (const std::uint64_t seed : {1u, 2u, 3u}) {
+      Scene scene = test::scene_of(law);
+      scene.seed = seed;
+      scene.specimen.count = 100, scene.specimen.solid_fraction = 0.5;
+      scene.specimen.grading.kind = Grading::Kind::uniform;
+      scene.specimen.grading.min_radius = 0.8e-3, scene.specimen.grading.max_radius = 1.2e-3;
+      State start = pressed(scene, 3e-7);
+      for (auto* set : {&start.grains.velocity, &start.grains.spin})
+        for (auto& v : *set) v.set(Vec3{});
+      start.cell.rate = Mat3{};
+      start.friction = {1e3};  // from here on every contact sticks, as the eigenvalue assumes
+      const StepInterval exact = step_interval(linearise(scene, start));
+      ASSERT_LT(exact.dt_limit_upper / exact.dt_safe, 1 + 1e-6);
+      start.dt = exact.dt_safe;
+      double low = 0.9, high = 1.1;
+      while (high - low > 5e-4) {
+        const double middle = 0.5 * (low + high);
+        State at = start;
+        at.dt = middle * exact.dt_safe;
+        (difference_grows(scene, at, at.dt) ? high : low) = middle;
+      }
+      EXPECT_NEAR(0.5 * (low + high), 1.0, 2e-3) << law << " seed " << seed;
+    }
+}
 
 }  // namespace
