@@ -37,15 +37,17 @@ OverlapGrowth closing(const State& state, double time) {
 double estimated_step(const Scene& scene, const Network& net, const std::string& name) {
   const Material& m = scene.materials.front();
   const auto known = [](double x) { return std::isnan(x) ? std::nullopt : std::optional<double>(x); };
-  const auto rows = time_step_estimates(net, {known(m.shear_modulus), known(m.poisson), known(m.density), std::nullopt});
+  const auto rows =
+      time_step_estimates(net, {known(m.shear_modulus), known(m.poisson), known(m.density), std::nullopt});
   std::vector<std::string> names;
   for (const auto& row : rows) {
     if (row.name == name) return row.dt;
     names.push_back(row.name);
   }
   if (rows.empty()) return INFINITY;
-  throw InputError(fmt::format("{}: timestep.policy = \"estimate:{}\" is not a rule that this scene allows; did you mean \"{}\"?",
-                               scene.file, name, nearest(name, names).empty() ? names.front() : nearest(name, names)));
+  throw InputError(
+      fmt::format("{}: timestep.policy = \"estimate:{}\" is not a rule that this scene allows; did you mean \"{}\"?",
+                  scene.file, name, nearest(name, names).empty() ? names.front() : nearest(name, names)));
 }
 
 }  // namespace
@@ -63,7 +65,8 @@ double Controller::free_limit(const State& state) const {
   if (state.grains.rotates()) pair.grains.spin = {{0, 0, 0, state.grains.spin[i].w}, {0, 0, 0, state.grains.spin[i].w}};
   pair.grains.id = {1, 2};
   pair.contacts.i = {0}, pair.contacts.j = {1};
-  pair.contacts.history_size = state.contacts.history_size, pair.contacts.history_vectors = state.contacts.history_vectors;
+  pair.contacts.history_size = state.contacts.history_size,
+  pair.contacts.history_vectors = state.contacts.history_vectors;
   pair.contacts.history.assign(Contacts::lanes * pair.contacts.history_size, 0.0);
   Network net = linearise(scene_, pair);
   for (auto& s : net.springs) s.normal *= 12, s.tangential *= 12;
@@ -80,11 +83,16 @@ void Controller::evaluate(State& state) {
   for (const auto& s : net.springs) foreseen += s.normal * std::pow(s.arm_i + s.arm_j, 2);
 
   const double cap = free_limit(state);
-  plan.safe = net.springs.empty() ? cap : std::min(cap, 2 / std::sqrt(splitting_bound(net, {.matrix_sweeps = 0}).value));
+  plan.safe =
+      net.springs.empty() ? cap : std::min(cap, 2 / std::sqrt(splitting_bound(net, {.matrix_sweeps = 0}).value));
   const auto& spec = scene_.timestep;
-  if (spec.policy == "certified") plan.dt = spec.safety * plan.safe;
-  else if (spec.policy == "fixed") plan.dt = spec.fixed;
-  else plan.dt = std::min(spec.safety * estimated_step(scene_, net, spec.policy.substr(std::string("estimate:").size())), cap);
+  if (spec.policy == "certified")
+    plan.dt = spec.safety * plan.safe;
+  else if (spec.policy == "fixed")
+    plan.dt = spec.fixed;
+  else
+    plan.dt =
+        std::min(spec.safety * estimated_step(scene_, net, spec.policy.substr(std::string("estimate:").size())), cap);
 
   const double growth = state.stiffness_sum > 0 ? foreseen / state.stiffness_sum : net.springs.empty() ? 1.0 : 2.0;
   plan.due = state.step + plan.horizon;

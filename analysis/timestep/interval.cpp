@@ -1,5 +1,6 @@
 #include "timestep/interval.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -10,6 +11,9 @@
 #include "eigen/lanczos.hpp"
 #include "timestep/collatz.hpp"
 #include "timestep/estimates.hpp"
+#include "timestep/incomplete_cholesky.hpp"
+#include "timestep/patch.hpp"
+#include "timestep/scalar_weights.hpp"
 
 namespace eg {
 namespace {
@@ -31,31 +35,72 @@ void solve_densely(const Network& network, StepInterval& interval) {
   interval.mode = std::move(top.vector);
 }
 
-void solve_below(const Network& network, const IntervalOptions& options, StepInterval& interval) {
-  const StiffnessOperator a(network, StiffnessOperator::Scaling::mass);
+constexpr int shells = 2;        // of contacts around the grains that are not proved below λmax one by one
+constexpr double crowded = 0.4;  // share of the grains from which on the patch is no longer local
+
+/// The grains that splitting does not prove to be below sigma, with their surroundings, stiffest first.
+std::vector<Index> stiff_patch(const Sides& sides, const BlockRanges& ranges, double sigma) {
+  std::vector<Index> grains;
+  for (std::size_t g = 0; g < sides.size(); ++g)
+    if (ranges.high[g] >= sigma && !sides.of(g).empty()) grains.push_back(static_cast<Index>(g));
+  grains = grow_patch(sides, std::move(grains), shells);
+  std::sort(grains.begin(), grains.end(),
+            [&](Index a, Index b) { return ranges.low[a] != ranges.low[b] ? ranges.low[a] > ranges.low[b] : a < b; });
+  return grains;
+}
+
+/// The lower end from Lanczos on the stiffest grains, if they are few, else on all.
+void solve_below(const Sides& sides, const ScalarWeights& weights, const IntervalOptions& options,
+                 StepInterval& interval) {
+  const Network& whole = sides.network();
+  const auto patch = stiff_patch(sides, weights.ranges, weights.known);
+  const bool local = static_cast<double>(patch.size()) <= crowded * static_cast<double>(sides.size());
+  const Network part = local ? patch_network(sides, patch) : Network{};
+  const StiffnessOperator a(local ? part : whole, StiffnessOperator::Scaling::mass);
   LanczosOptions lanczos;
   lanczos.tolerance = options.tolerance;
   lanczos.seed = options.seed;
   EigenResult top = lanczos_largest(a, lanczos);
   interval.lambda_lower = top.value * (1 - quotient_error);
-  interval.method_lower = top.method;
+  interval.method_lower = local ? "Lanczos on the stiffest grains" : top.method;
   interval.residual = top.residual;
   interval.products = top.products;
-  interval.mode = std::move(top.vector);
+  if (!local) {
+    interval.mode = std::move(top.vector);
+    return;
+  }
+  const auto width = static_cast<std::size_t>(whole.dofs_per_grain());
+  interval.mode.assign(total_dofs(whole), 0.0);
+  for (std::size_t k = 0; k < patch.size(); ++k)
+    std::copy_n(top.vector.begin() + static_cast<std::ptrdiff_t>(k * width), width,
+                interval.mode.begin() + static_cast<std::ptrdiff_t>(patch[k] * width));
 }
 
-void solve_above(const Network& network, const IntervalOptions& options, StepInterval& interval,
-                 SplittingWeights* weights) {
-  SplittingOptions splitting;
-  splitting.lower_bound = interval.lambda_lower;
-  splitting.close_enough = options.width;
-  interval.lambda_upper = splitting_bound(network, splitting, weights).value;
-  interval.method_upper = "contact splitting";
-  if (interval.lambda_upper <= interval.lambda_lower * (1 + options.width)) return;
-  if (const double collatz = collatz_bound(network).value; collatz < interval.lambda_upper) {
-    interval.lambda_upper = collatz;
-    interval.method_upper = "block Collatz-Wielandt";
+/// One try at a proof: how far above the lower end, and how much fill to give up.
+struct Attempt {
+  double width, drop;
+};
+
+/// The upper end, by the cheapest certificate that is close enough, else by the best of those tried.
+void solve_above(const Sides& sides, const ScalarWeights& weights, const IntervalOptions& options,
+                 StepInterval& interval) {
+  const auto take = [&](double bound, const char* method) {
+    if (bound < interval.lambda_upper) interval.lambda_upper = bound, interval.method_upper = method;
+    return interval.lambda_upper <= interval.lambda_lower * (1 + options.width);
+  };
+  interval.lambda_upper = INFINITY;
+  SplittingWeights splitting{weights.t, {}, {}};
+  if (take(splitting_bound(sides, {.matrix_sweeps = 0}, &splitting).value, "contact splitting")) return;
+  const double w = options.width;
+  for (const auto [width, drop] : {Attempt{w, 1e-3}, {w, 2e-4}, {4 * w, 2e-4}, {16 * w, 2e-4}}) {
+    const double sigma = interval.lambda_lower * (1 + width);
+    if (sigma >= interval.lambda_upper) break;
+    const auto patch = stiff_patch(sides, weights.ranges, sigma);
+    if (!factorise_below(sides, weights.t, patch, sigma, drop).below) continue;
+    take(sigma, "incomplete Cholesky of the stiff patches");
+    return;
   }
+  take(collatz_bound(sides.network()).value, "block Collatz-Wielandt");
 }
 
 void describe_mode(const Network& network, StepInterval& interval) {
@@ -75,7 +120,7 @@ void describe_mode(const Network& network, StepInterval& interval) {
 
 }  // namespace
 
-StepInterval step_interval(const Network& network, const IntervalOptions& options, SplittingWeights* weights) {
+StepInterval step_interval(const Network& network, const IntervalOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   StepInterval interval;
   if (network.springs.empty()) {
@@ -83,8 +128,10 @@ StepInterval step_interval(const Network& network, const IntervalOptions& option
   } else if (total_dofs(network) <= options.dense_limit) {
     solve_densely(network, interval);
   } else {
-    solve_below(network, options, interval);
-    solve_above(network, options, interval, weights);
+    const Sides sides(network);
+    ScalarWeights weights = sweep_scalars(sides, {});
+    if (weights.known > 0) solve_below(sides, weights, options, interval);
+    if (weights.known > 0) solve_above(sides, weights, options, interval);
   }
   if (interval.lambda_upper > 0)
     describe_mode(network, interval);

@@ -11,8 +11,8 @@ namespace eg {
 
 struct IntervalOptions {
   std::size_t dense_limit = 600;  ///< degrees of freedom up to which the whole spectrum is computed; 0: never
-  double tolerance = 1e-6;        ///< residual of the Ritz pair over its value
-  double width = 4e-3;            ///< relative width in λ at which the upper bound is good enough
+  double tolerance = 1e-4;        ///< residual of the Ritz pair over its value
+  double width = 1e-3;            ///< relative width in λ at which the upper bound is good enough
   std::uint64_t seed = 1;         ///< of the random start vector
 };
 
@@ -21,7 +21,7 @@ struct StepInterval {
   std::string method_lower, method_upper;
   double dt_safe = 0;         ///< 2/√lambda_upper [s]: proved stable; infinite when nothing is stiff
   double dt_limit_upper = 0;  ///< 2/√lambda_lower [s]: the limit is not above; a larger step is proved unstable
-  double residual = 0;        ///< ‖Ax − θx‖ of the Ritz pair [1/s²]
+  double residual = 0;        ///< ‖Ax − θx‖ of the Ritz pair, on the grains it was sought on [1/s²]
   int products = 0;           ///< with the matrix
   double seconds = 0;         ///< wall clock
   Index grain = no_index;     ///< place in the network of the grain with the largest share of the mode
@@ -32,8 +32,7 @@ struct StepInterval {
 };
 
 /// The interval for a network of any size. Grains that cannot move, rattlers, and a network without springs (λ = 0,
-/// infinite step) are fine. *weights is read and replaced if given: a warm start for the upper bound.
-StepInterval step_interval(const Network& network, const IntervalOptions& options = {},
-                           SplittingWeights* weights = nullptr);
+/// infinite step) are fine.
+StepInterval step_interval(const Network& network, const IntervalOptions& options = {});
 
 }  // namespace eg

@@ -68,12 +68,15 @@ int sweep_matrices(const SplittingOptions& options, WeightedContacts& contacts, 
 }  // namespace
 
 SplittingBound splitting_bound(const Network& network, const SplittingOptions& options, SplittingWeights* weights) {
-  const Sides sides(network);
+  return splitting_bound(Sides(network), options, weights);
+}
+
+SplittingBound splitting_bound(const Sides& sides, const SplittingOptions& options, SplittingWeights* weights) {
   if (sides.size() == 0) return {};
   SplittingWeights start;
   BlockRanges ranges(sides.size());
   int scalar_sweeps = 0, matrix_sweeps = 0;
-  if (weights && weights->scalar.size() == network.springs.size()) {
+  if (weights && weights->scalar.size() == sides.network().springs.size()) {
     start = *weights;
     std::vector<Index> all(sides.size());
     std::iota(all.begin(), all.end(), Index{0});

@@ -38,5 +38,7 @@ struct SplittingBound {
 /// Upper bound of λmax(M⁻¹K). Reads and replaces *weights if given.
 SplittingBound splitting_bound(const Network& network, const SplittingOptions& options = {},
                                SplittingWeights* weights = nullptr);
+SplittingBound splitting_bound(const Sides& sides, const SplittingOptions& options = {},
+                               SplittingWeights* weights = nullptr);
 
 }  // namespace eg

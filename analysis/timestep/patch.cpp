@@ -1,0 +1,61 @@
+#include "timestep/patch.hpp"
+
+#include <utility>
+
+namespace eg {
+
+std::vector<Index> grow_patch(const Sides& sides, std::vector<Index> grains, int shells) {
+  std::vector<char> taken(sides.size(), 0);
+  for (const Index g : grains) taken[g] = 1;
+  std::size_t begin = 0;
+  for (int shell = 0; shell < shells; ++shell) {
+    const std::size_t end = grains.size();
+    for (std::size_t k = begin; k < end; ++k)
+      for (const Side& side : sides.of(grains[k])) {
+        if (side.role == Side::Role::alone) continue;
+        const Spring& s = sides.network().springs[side.spring];
+        const Index other = side.role == Side::Role::first ? s.j : s.i;
+        if (!std::exchange(taken[other], 1)) grains.push_back(other);
+      }
+    begin = end;
+  }
+  return grains;
+}
+
+std::vector<Index> places(const Sides& sides, std::span<const Index> grains) {
+  std::vector<Index> place(sides.size(), no_index);
+  for (std::size_t k = 0; k < grains.size(); ++k) place[grains[k]] = static_cast<Index>(k);
+  return place;
+}
+
+Network patch_network(const Sides& sides, std::span<const Index> grains) {
+  const Network& whole = sides.network();
+  const auto place = places(sides, grains);
+  Network part;
+  part.dimension = whole.dimension;
+  part.rotation = whole.rotation;
+  for (const Index g : grains) {
+    part.inverse_mass.push_back(whole.inverse_mass[g]);
+    if (whole.rotation) part.inverse_inertia.push_back(whole.inverse_inertia[g]);
+    part.radius.push_back(whole.radius[g]);
+    part.id.push_back(g);
+  }
+  for (const Index g : grains)
+    for (const Side& side : sides.of(g)) {
+      Spring s = whole.springs[side.spring];
+      const bool first = s.i == g;
+      const Index other = first ? s.j : s.i;
+      const Index there = other == no_index ? no_index : place[other];
+      if (there == no_index) {  // held: a wall; seen from j the normal turns round
+        if (!first) s.arm_i = s.arm_j, s.n = -s.n;
+        s.i = place[g], s.j = no_index, s.arm_j = 0;
+        part.springs.push_back(s);
+      } else if (first) {
+        s.i = place[g], s.j = there;
+        part.springs.push_back(s);
+      }
+    }
+  return part;
+}
+
+}  // namespace eg

@@ -1,0 +1,20 @@
+#pragma once
+// Part of a network: some grains, cut loose from the rest.
+#include <span>
+#include <vector>
+
+#include "timestep/sides.hpp"
+
+namespace eg {
+
+/// The grains given and those within `shells` contacts of them, in that order, each once.
+std::vector<Index> grow_patch(const Sides& sides, std::vector<Index> grains, int shells);
+
+/// The network of these grains alone, in this order, with every other grain held fixed (its contacts become walls). Its
+/// matrix is a principal part of the whole one, so λmax of the patch ≤ λmax (Cauchy's interlacing).
+Network patch_network(const Sides& sides, std::span<const Index> grains);
+
+/// Place of every grain of the network in the patch, or no_index.
+std::vector<Index> places(const Sides& sides, std::span<const Index> grains);
+
+}  // namespace eg
