@@ -102,8 +102,7 @@ struct StageSpec {
   double until_axial_strain = not_given;  ///< |εz| (2D: |εy|) since the stage began [-]
   double max_steps = 5e6;                 ///< a stage that has not ended by then stops the run with an error
   // record
-  double record_every_steps =
-      not_given;  ///< default: 100 rows spread over the stage's known end, else every 1000 steps
+  double record_every_steps = not_given;  ///< default: 1000, unless by strain
   double record_every_strain = not_given;
   double snapshot_every_steps = not_given;
 };
