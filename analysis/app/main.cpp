@@ -1,12 +1,29 @@
 // eigengrain: discrete elements with a proved time step.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 
 #include "app/commands.hpp"
 #include "base/error.hpp"
 #include "base/version.hpp"
+
+namespace {
+
+/// A first word that is no subcommand is a misspelt one; the parser would only say that there is none.
+void check_subcommand(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  std::vector<std::string> names;
+  for (const auto* sub : app.get_subcommands([](const CLI::App*) { return true; })) names.push_back(sub->get_name());
+  if (std::ranges::find(names, argv[1]) != names.end()) return;
+  const auto meant = eg::nearest(argv[1], names);
+  throw eg::InputError(fmt::format(
+      "eigengrain: {} is not a subcommand; {}", argv[1],
+      meant.empty() ? "`eigengrain --help` lists what there is" : fmt::format("did you mean \"{}\"?", meant)));
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{"eigengrain: discrete elements with a proved time step (SI units everywhere)", "eigengrain"};
@@ -20,9 +37,17 @@ int main(int argc, char** argv) {
   eg::add_run_command(app, action);
   eg::add_timestep_command(app, action);
   eg::add_info_command(app, action);
-  CLI11_PARSE(app, argc, argv);
   try {
-    return action();
+    check_subcommand(app, argc, argv);
+    app.parse(argc, argv);
+    const int status = action();
+    if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw eg::RunError("the output could not be written");
+    return status;
+  } catch (const CLI::Success& e) {
+    return app.exit(e);
+  } catch (const CLI::Error& e) {
+    app.exit(e);
+    return 2;
   } catch (const eg::InputError& e) {
     fmt::print(stderr, "{}\n", e.what());
     return 2;

@@ -73,25 +73,22 @@ State make_specimen(const Scene& scene) {
 
 Snapshot bare_packing(const std::string& path, const BareFlags& f) {
   const Packing packing = read_packing(path);
-  std::string text = fmt::format("title = \"bare packing\"\ndimension = {}\nrotation = {}\n[material.grain]\n",
-                                 packing.dimension, !f.no_rotation);
-  const auto line = [&](const char* key, double value) {
-    if (!std::isnan(value)) text += fmt::format("{} = {:e}\n", key, value);
-  };
-  line("shear_modulus", f.shear_modulus), line("poisson", f.poisson), line("density", f.density),
-      line("friction", f.friction);
-  line("normal_stiffness", f.normal_stiffness), line("shear_stiffness", f.shear_stiffness);
-  text += fmt::format(
-      "[contact]\nlaw = \"{}\"\narms = \"{}\"\n[specimen]\nsource = \"file\"\npath = '{}'\n[boundary]\ntype = "
-      "\"periodic\"\n",
-      f.law, f.arms, std::filesystem::absolute(path).string());
+  SceneSettings settings{fmt::format("dimension={}", packing.dimension),
+                         fmt::format("rotation={}", !f.no_rotation),
+                         "material.grain={}",
+                         "contact.law=" + f.law,
+                         "contact.arms=" + f.arms,
+                         "specimen={source=\"file\", path=\"packing\"}",
+                         "boundary.type=periodic"};
+  for (const auto& [key, value] : f.constants())
+    if (!std::isnan(value)) settings.push_back(fmt::format("material.grain.{}={}", key, value));
   try {
-    const Scene scene = parse_scene(text, path);
+    const Scene scene = parse_scene("title = \"bare packing\"", path, settings);
     return {scene, make_state(scene, packing)};
   } catch (const InputError& e) {
     throw InputError(
-        fmt::format("{}; give the material of a bare packing by flags, e.g. --law hertz-mindlin --shear-modulus 29e9 "
-                    "--poisson 0.12 --density 2650 --friction 0.25, or use a scene",
+        fmt::format("{}; the material of a bare packing comes from flags, e.g. --law hertz-mindlin "
+                    "--shear-modulus 29e9 --poisson 0.12 --density 2650 --friction 0.25",
                     e.what()));
   }
 }

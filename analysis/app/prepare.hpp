@@ -19,6 +19,16 @@ struct BareFlags {
   double normal_stiffness = Material::unset, shear_stiffness = Material::unset;
   std::string arms = "overlap";
   bool no_rotation = false;
+
+  /// The material constants by their key in a scene.
+  std::vector<std::pair<std::string_view, double>> constants() const {
+    return {{"shear_modulus", shear_modulus},
+            {"poisson", poisson},
+            {"density", density},
+            {"friction", friction},
+            {"normal_stiffness", normal_stiffness},
+            {"shear_stiffness", shear_stiffness}};
+  }
 };
 
 /// What a file is, by its content.

@@ -16,7 +16,8 @@ std::vector<HistoryColumn> history_columns(const Scene& scene);
 std::vector<double> history_row(const Scene& scene, const State& state, const RunStatus& status);
 
 /// Assumptions of the method that the state breaks, one line each: overlap above 5 % of the smaller diameter, inertial
-/// number above 2.5e-3, energy drift above 1 % of the work done, step above the certified limit.
+/// number above 2.5e-3 in a stage that drives strain, energy drift above 1 % of the work done, step above the certified
+/// limit.
 std::vector<std::string> broken_assumptions(const Scene& scene, const State& state, const RunStatus& status);
 
 /// Energies of a state [J]: elastic part from the contacts, the rest from its ledger.

@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.hpp"
@@ -17,6 +16,7 @@
 #include "boundary/cell_control.hpp"
 #include "io/scene_file.hpp"
 #include "io/snapshot.hpp"
+#include "io/text_file.hpp"
 #include "io/vtk.hpp"
 #include "measure/homogenised.hpp"
 
@@ -41,7 +41,11 @@ fs::path result_folder(const RunFlags& flags, bool resumed) {
       throw InputError(
           fmt::format("{}: holds the results of an earlier run; name another folder with --out, or say --overwrite",
                       folder.string()));
-    fs::create_directories(folder);
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error)
+      throw InputError(
+          fmt::format("{}: cannot be made a folder ({}); name another with --out", folder.string(), error.message()));
     return folder;
   }
   return input.has_parent_path() ? input.parent_path() : fs::path(".");
@@ -117,6 +121,15 @@ nlohmann::json result_json(const Scene& scene, const State& state, const Control
   return j;
 }
 
+/// Keeps the state of a run that cannot go on; says where, or why not.
+std::string keep_failed(const Recorder& recorder, const State& state) {
+  try {
+    return "state kept in " + recorder.snapshot(state, "failed");
+  } catch (const RunError& e) {
+    return e.what();
+  }
+}
+
 void print_result(const nlohmann::json& j, const fs::path& folder, int dimension) {
   fmt::print("{} grains, {} steps, {:.6g} s simulated in {}\n", j["particles"].get<std::size_t>(),
              j["steps"].get<std::uint64_t>(), j["time_s"].get<double>(), duration_text(j["elapsed_s"].get<double>()));
@@ -167,8 +180,7 @@ int run_command(const RunFlags& flags) {
   try {
     complete = run_stages(scene, state, controller, observer, flags.scalar);
   } catch (const RunError& e) {
-    const std::string path = recorder.snapshot(state, "failed");
-    throw RunError(fmt::format("{} (state kept in {})", e.what(), path));
+    throw RunError(fmt::format("{} ({})", e.what(), keep_failed(recorder, state)));
   }
   progress.finish();
   if (!complete) {
@@ -180,7 +192,7 @@ int run_command(const RunFlags& flags) {
   write_vtp((recorder.folder() / "final.vtp").string(), state);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const auto result = result_json(scene, state, controller.log(), seconds, recorder);
-  std::ofstream(recorder.folder() / "result.json") << result.dump(2) << "\n";
+  write_file((recorder.folder() / "result.json").string(), result.dump(2) + "\n");
   if (flags.json)
     fmt::print("{}\n", result.dump(2));
   else

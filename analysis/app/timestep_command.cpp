@@ -12,6 +12,7 @@
 #include "assembly/linearise.hpp"
 #include "base/error.hpp"
 #include "base/progress.hpp"
+#include "contact/laws.hpp"
 #include "io/scene_file.hpp"
 #include "measure/homogenised.hpp"
 #include "timestep/verify.hpp"
@@ -23,14 +24,26 @@ struct TimestepFlags {
   std::string input, figure;
   SceneSettings settings;
   BareFlags bare;
+  std::string bare_flag;  ///< one of those given that only a bare packing can take, or ""
   bool verify = false, json = false, initial = false;
   double max_speed = Material::unset;
   int threads = 0;
 };
 
+/// Long work must not end in a figure that cannot be written.
+void check_figure(const std::string& path) {
+  if (path.empty()) return;
+  const auto ending = std::filesystem::path(path).extension();
+  if (ending != ".svg" && ending != ".png" && ending != ".pdf")
+    throw input_error(path, 0, "the figure", "has an ending that names no format", "use .svg, .png or .pdf");
+}
+
 Snapshot load(const TimestepFlags& flags) {
   if (kind_of(flags.input) == InputKind::packing && flags.settings.empty())
     return bare_packing(flags.input, flags.bare);
+  if (!flags.bare_flag.empty())
+    throw input_error(flags.input, 0, flags.bare_flag, "is for bare packings; a scene or snapshot has its own material",
+                      "leave it out, or change a scene with --set");
   Snapshot s = read_input(flags.input, flags.settings);
   if (s.state.grains.size() > 0) return s;
   s.state = make_specimen(s.scene);
@@ -39,6 +52,7 @@ Snapshot load(const TimestepFlags& flags) {
 }
 
 int timestep_command(const TimestepFlags& flags) {
+  check_figure(flags.figure);
   if (flags.threads > 0) omp_set_num_threads(flags.threads);
   Snapshot work = load(flags);
   if (flags.bare.no_rotation) work.scene.rotation = false, work.state.grains.spin.clear();
@@ -96,7 +110,7 @@ void add_timestep_command(CLI::App& app, Action& action) {
   sub->add_flag("--initial", f->initial, "of a scene: the specimen before its stages");
   sub->add_flag("--json", f->json, "print the report as JSON");
   sub->add_option("--figure", f->figure, "draw the rules of thumb against the limit (.svg, .png or .pdf)");
-  sub->add_option("--law", f->bare.law, "contact law of a bare packing: linear, hertz-mindlin, hertz-mindlin-rescale");
+  sub->add_option("--law", f->bare.law, "contact law of a bare packing")->check(CLI::IsMember(law_names()));
   sub->add_option("--shear-modulus", f->bare.shear_modulus, "G of a bare packing [Pa]");
   sub->add_option("--poisson", f->bare.poisson, "Poisson's ratio of a bare packing [-]");
   sub->add_option("--density", f->bare.density, "density of the grains of a bare packing [kg/m3]");
@@ -104,11 +118,18 @@ void add_timestep_command(CLI::App& app, Action& action) {
   sub->add_option("--normal-stiffness", f->bare.normal_stiffness, "kn of a bare packing, linear law [N/m]");
   sub->add_option("--shear-stiffness", f->bare.shear_stiffness, "ks of a bare packing, linear law [N/m]");
   sub->add_option("--arms", f->bare.arms,
-                  "contact arms of a bare packing: overlap (R - d/2) or radius (R, as LAMMPS gran/*)");
+                  "contact arms of a bare packing: overlap (R - d/2) or radius (R, as LAMMPS gran/*)")
+      ->check(CLI::IsMember({"overlap", "radius"}));
   sub->add_flag("--no-rotation", f->bare.no_rotation, "without rotational degrees of freedom");
-  sub->add_option("--max-speed", f->max_speed, "largest relative speed at a contact, for Hertz's duration [m/s]");
+  sub->add_option("--max-speed", f->max_speed, "largest relative speed at a contact, for Hertz's duration [m/s]")
+      ->check(CLI::Range(1e-9, 1e9));
   sub->add_option("--threads", f->threads, "threads (default: all)")->check(CLI::Range(1, 1024));
-  sub->callback([f, &action] { action = [f] { return timestep_command(*f); }; });
+  sub->callback([f, sub, &action] {
+    for (const char* flag : {"--law", "--shear-modulus", "--poisson", "--density", "--friction", "--normal-stiffness",
+                             "--shear-stiffness", "--arms"})
+      if (sub->count(flag) > 0) f->bare_flag = flag;
+    action = [f] { return timestep_command(*f); };
+  });
 }
 
 }  // namespace eg

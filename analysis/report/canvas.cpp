@@ -27,7 +27,7 @@ cairo_surface_t* open_surface(const std::filesystem::path& path, double width, d
   if (ending == ".png")
     return cairo_image_surface_create(CAIRO_FORMAT_ARGB32, static_cast<int>(std::ceil(width * pixels_a_point)),
                                       static_cast<int>(std::ceil(height * pixels_a_point)));
-  throw input_error(path.string(), 0, "has an ending that names no figure format", "use .svg, .png or .pdf");
+  throw input_error(path.string(), 0, "the ending", "names no figure format", "use .svg, .png or .pdf");
 }
 
 }  // namespace
