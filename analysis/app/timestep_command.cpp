@@ -51,6 +51,19 @@ Snapshot load(const TimestepFlags& flags) {
   return s;
 }
 
+void draw_figure(const TimestepReport& report, const std::string& file) {
+  if (file.empty()) return;
+  if (report.estimates.empty()) {
+    fmt::print(stderr, "no figure: nothing limits the step\n");
+    return;
+  }
+  const std::filesystem::path path(file);
+  std::error_code ignored;  // the figure's own message says that it cannot be written
+  if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), ignored);
+  write_figure(figure_of(report), file);
+  fmt::print(stderr, "figure: {}\n", file);
+}
+
 int timestep_command(const TimestepFlags& flags) {
   check_figure(flags.figure);
   if (flags.threads > 0) omp_set_num_threads(flags.threads);
@@ -83,16 +96,11 @@ int timestep_command(const TimestepFlags& flags) {
   }
   report.elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
-  if (!flags.figure.empty()) {
-    const std::filesystem::path path(flags.figure);
-    if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path());
-    write_figure(figure_of(report), flags.figure);
-  }
   if (flags.json)
     fmt::print("{}\n", json_of(report).dump(2));
   else
     fmt::print("{}", text_of(report));
-  if (!flags.figure.empty()) fmt::print(stderr, "figure: {}\n", flags.figure);
+  draw_figure(report, flags.figure);
   return 0;
 }
 

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <numeric>
 #include <span>
+#include <tuple>
 
 #include "base/error.hpp"
 #include "io/text_file.hpp"
@@ -125,6 +127,23 @@ void read_grain(const Lines& line, double smallest_edge, Packing& packing) {
   packing.radius.push_back(radius);
 }
 
+/// Between grains at one point no force has a direction.
+void check_distinct(const Packing& packing, const std::string& file) {
+  std::vector<std::size_t> order(packing.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto at = [&](std::size_t i) {
+    const Vec3& x = packing.position[i];
+    return std::tuple(x.x, x.y, x.z, i);
+  };
+  std::ranges::sort(order, {}, at);
+  for (std::size_t k = 1; k < order.size(); ++k) {
+    const Vec3 &a = packing.position[order[k - 1]], &b = packing.position[order[k]];
+    if (a.x == b.x && a.y == b.y && a.z == b.z)
+      throw input_error(file, 0, fmt::format("grains {} and {}", order[k - 1] + 1, order[k] + 1),
+                        "lie at one point, where no contact force has a direction", "move or remove one of them");
+  }
+}
+
 }  // namespace
 
 Packing parse_packing(std::string_view text, const std::string& file) {
@@ -139,6 +158,7 @@ Packing parse_packing(std::string_view text, const std::string& file) {
   while (line.next()) read_grain(line, smallest, packing);
   if (packing.size() == 0)
     throw input_error(file, 0, "is an empty packing:", "no grain follows the cell", "write `x y z r` a line");
+  check_distinct(packing, file);
   return packing;
 }
 

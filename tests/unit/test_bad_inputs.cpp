@@ -264,6 +264,8 @@ const std::vector<PackingCase> packing_cases{
     {"1 1 1 1\n",
      "p.txt:1: the first line must hold 2 or 3 numbers, not 4; write the edges of the periodic cell, `Lx Ly "
      "Lz` (2D: `Lx Ly`)"},
+    {"1 1 1\n.5 .5 .5 .1\n.2 .5 .5 .1\n1.5 .5 .5 .2\n",
+     "p.txt: grains 1 and 3 lie at one point, where no contact force has a direction; move or remove one of them"},
     {"1 0 1\n", "p.txt:1: Ly = 0 must be > 0; edges are lengths in metres"},
     {"1 1 1\n0 0 0 -0.1\n", "p.txt:2: radius = -0.1 must be > 0"},
     {"1 1 1\n# c\n0 nan 0 0.1\n", "p.txt:3: \"nan\" is not a finite number; write numbers between blanks"},
