@@ -73,8 +73,13 @@ EG_INLINE Batch select(Mask m, Batch yes, Batch no) {
   return Double8(m.m ? yes.v : no.v);
 #endif
 }
+#if defined(__AVX512F__)
+EG_INLINE Batch max(Batch a, Batch b) { return Double8(_mm512_maskz_max_pd(0xff, a.v, b.v)); }
+EG_INLINE Batch min(Batch a, Batch b) { return Double8(_mm512_maskz_min_pd(0xff, a.v, b.v)); }
+#else
 EG_INLINE Batch max(Batch a, Batch b) { return select(a < b, b, a); }
 EG_INLINE Batch min(Batch a, Batch b) { return select(b < a, b, a); }
+#endif
 EG_INLINE Batch abs(Batch a) { return max(a, -a); }
 EG_INLINE Batch sqrt(Batch a) {
 #if defined(__AVX512F__)
@@ -85,29 +90,23 @@ EG_INLINE Batch sqrt(Batch a) {
   return r;
 #endif
 }
-/// 1/√a and 1/a to about an ulp: on AVX-512 a 14-bit guess and two Newton steps, several times faster than √ and ÷.
+/// 1/√a and 1/a to about an ulp: on AVX-512 a 14-bit guess y and the series in what is left, e = 1 − a y² or 1 − a y,
+/// up to e⁴; several times faster than √ and ÷.
 /// a must be a normal number > 0.
 EG_INLINE Batch rsqrt(Batch a) {
 #if defined(__AVX512F__)
-  Double8 y = _mm512_maskz_rsqrt14_pd(0xff, a.v);
-  const Double8 half = 0.5 * a.v;
-  for (int k = 0; k < 2; ++k) {
-    const Double8 e = 0.5 - half * y * y;  // y ← y (1 + e + 3/2 e²)
-    y += y * (e + 1.5 * e * e);
-  }
-  return y;
+  const Double8 y = _mm512_maskz_rsqrt14_pd(0xff, a.v);
+  const Double8 e = 1.0 - (a.v * y) * y;
+  return y + (y * e) * ((0.5 + 0.375 * e) + (e * e) * (0.3125 + 0.2734375 * e));
 #else
   return Batch(1.0) / sqrt(a);
 #endif
 }
 EG_INLINE Batch reciprocal(Batch a) {
 #if defined(__AVX512F__)
-  Double8 y = _mm512_maskz_rcp14_pd(0xff, a.v);
-  for (int k = 0; k < 2; ++k) {
-    const Double8 e = 1.0 - a.v * y;
-    y += y * (e + e * e);
-  }
-  return y;
+  const Double8 y = _mm512_maskz_rcp14_pd(0xff, a.v);
+  const Double8 e = 1.0 - a.v * y;
+  return y + (y * e) * ((1.0 + e) * (1.0 + e * e));
 #else
   return Batch(1.0) / a;
 #endif

@@ -11,6 +11,7 @@ template <class Law, bool rotation>
 class ForceLoopOf final : public ForceLoop {
  public:
   using Table = typename Law::template Constants<double>;
+  static constexpr std::size_t stride = rotation ? 2 : 1;  // quads a row of forces
 
   std::size_t history_size() const override { return eg::history_size<Law>; }
   std::size_t history_vectors() const override { return Law::history_vectors; }
@@ -56,79 +57,116 @@ class ForceLoopOf final : public ForceLoop {
     S force = S(0.0), touching = S(0.0), stiffness = S(0.0), shear_work = S(0.0), friction = S(0.0), viscous = S(0.0);
   };
 
+  /// What the law needs of eight (or one) contacts, and what it gives back.
+  template <class S>
+  struct Incoming {
+    Vec<S> branch, velocity, turn, roll;
+    S ri, sum, inverse_mass;
+  };
+  template <class S>
+  struct Outgoing {
+    Vec<S> force, moment;
+    S arm_i, arm_j;
+  };
+
+  /// Contacts go through in blocks, each in three passes: gather, law, scatter. One pass over all three would be a chain of
+  /// operations too long for the processor to overlap with the next one.
   template <class S, bool damped>
-  Tally chunk(State& state, ForceWorkspace& work, std::size_t k, double dt,
-                        const ForceOptions& options) const {
-    constexpr std::size_t lanes = lanes_of<S>, stride = rotation ? 2 : 1;
-    constexpr std::size_t ahead = 4 * Contacts::lanes;  // contacts between a prefetch and its use
+  Tally chunk(State& state, ForceWorkspace& work, std::size_t k, double dt, const ForceOptions& options) const {
+    constexpr std::size_t lanes = lanes_of<S>, block = lanes == 1 ? 1 : 8;
     Contacts& list = state.contacts;
     const std::size_t low = k * Contacts::chunk, high = std::min(state.grains.size(), low + Contacts::chunk);
     Quad* rows = work.rows.data();
     std::fill(rows + stride * low, rows + stride * high, Quad{});
     std::fill(rows + stride * work.schedule.halo_begin[k], rows + stride * work.schedule.halo_begin[k + 1], Quad{});
-
-    const Quad *position = state.grains.position.data(), *velocity = state.grains.velocity.data(),
-               *spin = state.grains.spin.data();
-    const Index *ci = list.i.data(), *cj = list.j.data(), *target = work.schedule.target.data();
-    const std::uint8_t* image = list.image.empty() ? nullptr : list.image.data();
-    const Quad* shift = image ? work.shift.data() : nullptr;
-    const bool uniform = state.grains.material.empty();
+    const Index* target = work.schedule.target.data();
     const bool prefetch = state.grains.size() > 20000;  // fewer stay in the second-level cache by themselves
-    const auto common = broadcast_struct<typename Law::template Constants<S>, S>(constants_.front());
     const Mat<S> affine = broadcast<S>(state.cell.rate);
     Sums<S> sums;
+    std::array<Incoming<S>, block> in;
+    std::array<Outgoing<S>, block> out;
 
     const std::size_t end = list.chunk_begin[k + 1];
-    for (std::size_t c = list.chunk_begin[k]; c < end; c += lanes) {
-      if (prefetch && c + ahead < end) {
-        for (std::size_t l = 0; l < lanes; ++l) {
-          const Index j = cj[c + ahead + l];
-          __builtin_prefetch(position + j), __builtin_prefetch(velocity + j);
-          if constexpr (rotation) __builtin_prefetch(spin + j);
-          __builtin_prefetch(rows + stride * target[c + ahead + l], 1);
-        }
-      }
-      const auto x = load_difference<S>(position, ci + c, cj + c, shift, image + c);
-      const Vec<S> branch = xyz(x);
-      const S ri = load_w<S>(position, ci + c), rj = x.w - ri;
-      const auto g = grain_grain(branch, ri, x.w, options.arms);
-      const auto touching = (g.overlap > S(0.0)) & (dot(branch, branch) > S(0.0));  // padding has branch 0
-      const auto v = load_difference<S>(velocity, ci + c, cj + c);
-      Motion<S> motion;
-      motion.translation = (xyz(v) + affine * branch) * S(dt);
-      if constexpr (rotation) {
-        motion.turn = xyz(load_sum<S>(spin, ci + c, cj + c)) * S(dt);
-        motion.roll = xyz(load_weighted_sum<S>(spin, position, ci + c, cj + c)) * S(dt);
-      }
-      const auto inc = increment<rotation>(g, motion);
-      const Sizes<S> sizes = grain_sizes(ri, rj);
-      const auto pair = Law::template pair<S>(
-          uniform ? common
-                  : gather_struct<typename Law::template Constants<S>, S>(
-                        constants_.data(),
-                        [&](std::size_t l) { return state.grains.material[ci[c + l]] * kinds_ + state.grains.material[cj[c + l]]; }),
-          sizes);
-
-      ContactHistory<Law, S> history;
-      double* stored =
-          list.history.data() + (c / Contacts::lanes * list.history_size) * Contacts::lanes + c % Contacts::lanes;
-      for (std::size_t h = 0; h < history.size(); ++h) history[h] = load_values<S>(stored + h * Contacts::lanes);
-      Dashpot<S> dashpot;
-      if constexpr (damped)
-        dashpot = {S(options.normal_ratio), S(options.shear_ratio), select(v.w > S(0.0), S(1.0) / v.w, S(0.0)),
-                   S(dt > 0 ? 1 / dt : 0)};
-      const ContactForce<S> f = interact<Law, damped>(pair, g, inc, touching, history, dashpot);
-      for (std::size_t h = 0; h < history.size(); ++h) store_values(stored + h * Contacts::lanes, history[h]);
-      add_contact<stride, S>(rows, ci + c, target + c, f.on_j, f.moment, g.arm_i, g.arm_j);
-
-      if (options.tally == TallyLevel::none) continue;
-      add_stress(sums, branch, f, touching);
-      if (options.tally == TallyLevel::stress) continue;
-      add_works(sums, inc, f, touching);
-      if (options.viscous_history)
-        sums.viscous = sums.viscous + viscous_work(stored + history.size() * Contacts::lanes, Contacts::lanes, g, inc, f);
+    for (std::size_t c = list.chunk_begin[k]; c < end; c += block * lanes) {
+      const std::size_t count = std::min(block, (end - c) / lanes);
+      if (prefetch && c + block * lanes < end) fetch(state, work, c + block * lanes, std::min(end, c + 2 * block * lanes));
+      for (std::size_t b = 0; b < count; ++b) gather<S>(in[b], state, work, c + b * lanes);
+      for (std::size_t b = 0; b < count; ++b)
+        respond<S, damped>(out[b], in[b], affine, state, c + b * lanes, dt, options, sums);
+      for (std::size_t b = 0; b < count; ++b)
+        add_contact<stride, S>(rows, list.i.data() + c + b * lanes, target + c + b * lanes, out[b].force, out[b].moment,
+                               out[b].arm_i, out[b].arm_j);
     }
     return finish(sums);
+  }
+
+  static void fetch(const State& state, const ForceWorkspace& work, std::size_t first, std::size_t end) {
+    for (std::size_t c = first; c < end; ++c) {
+      const Index j = state.contacts.j[c];
+      __builtin_prefetch(&state.grains.position[j]), __builtin_prefetch(&state.grains.velocity[j]);
+      if constexpr (rotation) __builtin_prefetch(&state.grains.spin[j]);
+      __builtin_prefetch(&work.rows[stride * work.schedule.target[c]], 1);
+    }
+  }
+
+  template <class S>
+  EG_INLINE static void gather(Incoming<S>& in, const State& state, const ForceWorkspace& work, std::size_t c) {
+    const auto& g = state.grains;
+    const Index *i = state.contacts.i.data() + c, *j = state.contacts.j.data() + c;
+    const bool images = !state.contacts.image.empty();
+    const auto x = load_difference<S>(g.position.data(), i, j, images ? work.shift.data() : nullptr,
+                                      images ? state.contacts.image.data() + c : nullptr);
+    const auto v = load_difference<S>(g.velocity.data(), i, j);
+    in.branch = xyz(x), in.sum = x.w, in.ri = load_w<S>(g.position.data(), i);
+    in.velocity = xyz(v), in.inverse_mass = v.w;
+    if constexpr (rotation) {
+      in.turn = xyz(load_sum<S>(g.spin.data(), i, j));
+      in.roll = xyz(load_weighted_sum<S>(g.spin.data(), g.position.data(), i, j));
+    }
+  }
+
+  template <class S, bool damped>
+  EG_INLINE void respond(Outgoing<S>& out, const Incoming<S>& in, const Mat<S>& affine, State& state, std::size_t c, double dt,
+                         const ForceOptions& options, Sums<S>& sums) const {
+    Contacts& list = state.contacts;
+    const S rj = in.sum - in.ri;
+    const auto g = grain_grain(in.branch, in.ri, in.sum, options.arms);
+    const auto touching = (g.overlap > S(0.0)) & (dot(in.branch, in.branch) > S(0.0));  // padding has branch 0
+    Motion<S> motion;
+    motion.translation = (in.velocity + affine * in.branch) * S(dt);
+    if constexpr (rotation) motion.turn = in.turn * S(dt), motion.roll = in.roll * S(dt);
+    const auto inc = increment<rotation>(g, motion);
+
+    ContactHistory<Law, S> history;
+    double* stored =
+        list.history.data() + (c / Contacts::lanes * list.history_size) * Contacts::lanes + c % Contacts::lanes;
+    for (std::size_t h = 0; h < history.size(); ++h) history[h] = load_values<S>(stored + h * Contacts::lanes);
+    Dashpot<S> dashpot;
+    if constexpr (damped)
+      dashpot = {S(options.normal_ratio), S(options.shear_ratio), select(in.inverse_mass > S(0.0), S(1.0) / in.inverse_mass, S(0.0)),
+                 S(dt > 0 ? 1 / dt : 0)};
+    const auto pair = Law::template pair<S>(constants<S>(state, c), grain_sizes(in.ri, rj));
+    const ContactForce<S> f = interact<Law, damped>(pair, g, inc, touching, history, dashpot);
+    for (std::size_t h = 0; h < history.size(); ++h) store_values(stored + h * Contacts::lanes, history[h]);
+    out.force = f.on_j;
+    if constexpr (rotation) out.moment = f.moment, out.arm_i = g.arm_i, out.arm_j = g.arm_j;
+
+    if (options.tally == TallyLevel::none) return;
+    add_stress(sums, in.branch, f, touching);
+    if (options.tally == TallyLevel::stress) return;
+    add_works(sums, inc, f, touching);
+    if (options.viscous_history)
+      sums.viscous = sums.viscous + viscous_work(stored + history.size() * Contacts::lanes, Contacts::lanes, g, inc, f);
+  }
+
+  template <class S>
+  EG_INLINE typename Law::template Constants<S> constants(const State& state, std::size_t c) const {
+    using Out = typename Law::template Constants<S>;
+    const auto& material = state.grains.material;
+    if (material.empty()) return broadcast_struct<Out, S>(constants_.front());
+    return gather_struct<Out, S>(constants_.data(), [&](std::size_t l) {
+      return material[state.contacts.i[c + l]] * kinds_ + material[state.contacts.j[c + l]];
+    });
   }
 
   template <class S, class M>
