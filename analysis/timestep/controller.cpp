@@ -9,13 +9,14 @@
 #include "assembly/linearise.hpp"
 #include "base/error.hpp"
 #include "timestep/estimates.hpp"
+#include "timestep/scalar_weights.hpp"
 
 namespace eg {
 namespace {
 
 constexpr std::uint64_t shortest = 20, longest = 1000;  // steps of a horizon
-constexpr double calm = 1.02, wild = 1.10;              // foreseen growth of Σ kn d²: lengthen below, shorten above
-constexpr double closing_margin = 2;                    // forecast over present closing speed
+constexpr double calm = 1.03, wild = 1.12;              // growth of λ over the horizon: lengthen below, shorten above
+constexpr double closing_margin = 1.5;                  // forecast over present closing speed
 
 /// How much the overlap of a pair can grow in `time`, from its present closing speed.
 OverlapGrowth closing(const State& state, double time) {
@@ -50,6 +51,12 @@ double estimated_step(const Scene& scene, const Network& net, const std::string&
                   scene.file, name, nearest(name, names).empty() ? names.front() : nearest(name, names)));
 }
 
+/// As λmax is now, seen from below; what it is held against must be seen from below too.
+double present_self_block(const Scene& scene, const State& state) {
+  const Network net = linearise(scene, state);
+  return largest_self_block(Sides(net));
+}
+
 }  // namespace
 
 double Controller::free_limit(const State& state) const {
@@ -79,12 +86,9 @@ void Controller::evaluate(State& state) {
   if (plan.horizon == 0) plan.horizon = shortest;
   const double dt = plan.dt > 0 ? plan.dt : state.dt > 0 ? state.dt : 0.0;
   const Network net = linearise(scene_, state, closing(state, static_cast<double>(plan.horizon) * dt));
-  double foreseen = 0;
-  for (const auto& s : net.springs) foreseen += s.normal * std::pow(s.arm_i + s.arm_j, 2);
-
   const double cap = free_limit(state);
-  plan.safe =
-      net.springs.empty() ? cap : std::min(cap, 2 / std::sqrt(splitting_bound(net, {.matrix_sweeps = 0}).value));
+  const Sides sides(net);
+  plan.safe = std::min(cap, 2 / std::sqrt(splitting_bound(sides, {.matrix_sweeps = 0}).value));
   const auto& spec = scene_.timestep;
   if (spec.policy == "certified")
     plan.dt = spec.safety * plan.safe;
@@ -94,8 +98,8 @@ void Controller::evaluate(State& state) {
     plan.dt =
         std::min(spec.safety * estimated_step(scene_, net, spec.policy.substr(std::string("estimate:").size())), cap);
 
-  const double growth = state.stiffness_sum > 0 ? foreseen / state.stiffness_sum : net.springs.empty() ? 1.0 : 2.0;
   plan.due = state.step + plan.horizon;
+  const double growth = plan.safe < cap ? largest_self_block(sides) / present_self_block(scene_, state) : 1.0;
   if (growth > wild) plan.horizon = std::max(shortest, plan.horizon / 2);
   if (growth < calm) plan.horizon = std::min(longest, plan.horizon * 3 / 2);
   log_.worst_ratio = std::max(log_.worst_ratio, plan.dt / plan.safe);

@@ -75,15 +75,30 @@ void sweep_hot(const Sides& sides, const ScalarSweepOptions& options, HotSet& se
   block_ranges(sides, weights.t, set.grains, weights.ranges);
 }
 
+std::vector<Index> all_grains(const Sides& sides) {
+  std::vector<Index> all(sides.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  return all;
+}
+
+/// Ranges of the self blocks; returns the largest lower end, rounded down.
+double self_blocks(const Sides& sides, const std::vector<Index>& all, BlockRanges& ranges) {
+  block_ranges(sides, {}, all, ranges);
+  return largest(ranges.low, all) * (1 - 1e-12);
+}
+
 }  // namespace
+
+double largest_self_block(const Sides& sides) {
+  BlockRanges ranges(sides.size());
+  return self_blocks(sides, all_grains(sides), ranges);
+}
 
 ScalarWeights sweep_scalars(const Sides& sides, const ScalarSweepOptions& options) {
   const auto& springs = sides.network().springs;
   ScalarWeights weights{std::vector(springs.size(), 1.0), BlockRanges(sides.size()), 0, 0};
-  std::vector<Index> all(sides.size());
-  std::iota(all.begin(), all.end(), Index{0});
-  block_ranges(sides, {}, all, weights.ranges);
-  weights.known = largest(weights.ranges.low, all) * (1 - 1e-12);
+  const std::vector<Index> all = all_grains(sides);
+  weights.known = self_blocks(sides, all, weights.ranges);
   if (options.most > 0)
     for (std::size_t c = 0; c < springs.size(); ++c)
       if (sides.is_split(c)) even_out(springs[c], weights.ranges.low, weights.t[c]);

@@ -18,6 +18,9 @@ struct ScalarSweepOptions {
   double target = 0;  ///< … or has come down to this [1/s²]
 };
 
+/// The largest eigenvalue of a self block Σ AᵀA [1/s²], a few per cent low at most: λmax(M⁻¹K) is not below.
+double largest_self_block(const Sides& sides);
+
 /// Improves t = 1 by sweeps t ← t λmax(S_j)/λmax(S_i), which even out the two grains of a contact. The first goes over
 /// all contacts; later ones leave out the contacts between grains already proved to be below a known lower bound of
 /// λmax. A pure function of the network; the same for any number of threads.
