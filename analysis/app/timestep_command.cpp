@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <omp.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -88,10 +89,10 @@ int timestep_command(const TimestepFlags& flags) {
     report.limiting_radius = net.radius[report.interval.grain];
   }
   if (flags.verify && report.interval.lambda_upper > 0) {
-    Progress progress("stepping a perturbation", 100, "%");
+    Progress progress("stepping a perturbation", 1, "");
     VerifyOptions options;
     options.guess = report.interval.dt_safe;
-    options.progress = [&](double share) { progress.update(100 * share); };
+    options.progress = [&](double share) { progress.update(std::min(share, 1.0)); };
     report.bracket = verify_by_stepping(net, options);
   }
   report.elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -52,7 +52,7 @@ std::string Progress::line(double seconds, const std::string& note) const {
   } else {
     text += fmt::format(" {:.0f} {}", done_, unit_);
   }
-  text += fmt::format("  {} {}/s", count_text(rate), unit_);
+  if (!unit_.empty()) text += fmt::format("  {} {}/s", count_text(rate), unit_);
   if (!note.empty()) text += "  " + note;
   return text;
 }
@@ -80,7 +80,8 @@ void Progress::clear() {
 
 void Progress::finish() {
   if (any_) {
-    const std::string text = fmt::format("{}: {:.0f} {} in {}", label_, done_, unit_, duration_text(elapsed()));
+    const std::string what = unit_.empty() ? "done" : fmt::format("{:.0f} {}", done_, unit_);
+    const std::string text = fmt::format("{}: {} in {}", label_, what, duration_text(elapsed()));
     fmt::print(out_, "{}{:<{}}\n", style_ == Style::bar ? "\r" : "", text, style_ == Style::bar ? shown_ : 0);
     std::fflush(out_);
   }

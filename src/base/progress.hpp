@@ -20,7 +20,8 @@ class Progress {
  public:
   enum class Style { quiet, lines, bar };
 
-  /// `total` in `unit`, 0 when it is not known beforehand: then count and rate are shown without bar and time left.
+  /// `total` in `unit` ("": nothing worth counting, only the share is shown), 0 when it is not known beforehand: then
+  /// count and rate are shown without bar and time left.
   Progress(std::string label, double total, std::string unit, Style style = style_of(stderr), std::FILE* out = stderr);
   ~Progress() { finish(); }
   Progress(const Progress&) = delete;

@@ -93,6 +93,17 @@ TEST(Progress, ShareBesideTheCount) {
   EXPECT_NE(text.find("\nrun 9000000001 steps  "), std::string::npos) << text;
 }
 
+TEST(Progress, WithoutUnitOnlyTheShareIsShown) {
+  const auto text = written([](std::FILE* out) {
+    Progress progress("search", 1, "", Progress::Style::lines, out);
+    progress.every(0, 1e9);
+    progress.update(0.5);
+  });
+  EXPECT_EQ(text.substr(0, 12), "search  50 %");
+  EXPECT_EQ(text.find("/s"), std::string::npos) << text;
+  EXPECT_NE(text.find("search: done in "), std::string::npos) << text;
+}
+
 TEST(Progress, ClearLeavesAnEmptyLine) {
   const auto text = written([](std::FILE* out) {
     Progress progress("x", 4, "u", Progress::Style::bar, out);
