@@ -5,23 +5,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "base/batch.hpp"
+#include "contact/lanes.hpp"
 
 namespace eg {
-namespace {
-
-EG_INLINE Double4 vector_of(const Quad& q) { return *reinterpret_cast<const Double4*>(&q); }
-
-/// Vectors of eight rows, component by component.
-template <class Pick>
-EG_INLINE Vec<Batch> columns(Pick row) {
-  const auto c = transpose_rows(row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7));
-  return {c.x, c.y, c.z};
-}
-
-EG_INLINE void add(Quad& to, Double4 v) { *reinterpret_cast<Double4*>(&to) += v; }
-
-}  // namespace
 
 StiffnessOperator::StiffnessOperator(const Network& network, Scaling scaling)
     : grains_(network.size()),
@@ -35,125 +21,88 @@ StiffnessOperator::StiffnessOperator(const Network& network, Scaling scaling)
       scale_[g] = std::sqrt(network.inverse_mass[g]);
       if (rotation_) turn_scale_[g] = std::sqrt(network.inverse_inertia[g]);
     }
-  rows_.resize(grains_ + 1);
-  build_chunks(network);
+  u_.resize(grains_ + 1), turn_.resize(grains_ + 1);
+  build_links(network);
 }
 
-void StiffnessOperator::add_link(const Spring& s, std::size_t lane, Index j, Index sum_j) {
-  Links& to = links_.back();
-  to.nx[lane] = s.n.x, to.ny[lane] = s.n.y, to.nz[lane] = s.n.z;
-  to.tangential[lane] = s.tangential, to.excess[lane] = s.normal - s.tangential;
-  to.arm_i[lane] = s.arm_i, to.arm_j[lane] = s.arm_j;
-  to.i[lane] = s.i, to.j[lane] = j, to.sum_j[lane] = sum_j;
-}
-
-void StiffnessOperator::build_chunks(const Network& network) {
+void StiffnessOperator::build_links(const Network& network) {
   std::vector<std::size_t> order(network.springs.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return network.springs[a].i < network.springs[b].i; });
 
-  std::vector<std::vector<std::uint32_t>> halo(grains_);
-  constexpr auto none = ~std::uint32_t{0};
-  std::vector<std::uint32_t> sum_of(grains_ + 1, none);  // of the chunk under way
-  std::uint32_t sums = 0;
+  std::vector<std::uint64_t> chunk_begin{0};
   auto next = order.begin();
   for (std::size_t first = 0; first < grains_; first += chunk_grains) {
-    const std::size_t last = std::min(first + chunk_grains, grains_);
-    chunks_.push_back({first, links_.size(), sums});
-    for (std::size_t g = first; g < last; ++g) sum_of[g] = sums++;
-    std::vector<Index> foreign;
-    for (std::size_t lane = 0; next != order.end() && network.springs[*next].i < last;
-         ++next, lane = (lane + 1) % lanes) {
-      const Spring& s = network.springs[*next];
-      const Index j = s.j == no_index ? static_cast<Index>(grains_) : s.j;
-      if (sum_of[j] == none) {
-        sum_of[j] = sums++;
-        foreign.push_back(j);
-        if (j < grains_) halo[j].push_back(sum_of[j]);
-      }
-      if (lane == 0) {
+    const auto own = static_cast<Index>(first);
+    for (std::size_t lane = 0; next != order.end() && network.springs[*next].i < first + chunk_grains; ++next, ++lane) {
+      if (lane % lanes == 0) {
         links_.emplace_back();
-        for (std::size_t l = 0; l < lanes; ++l) add_link({}, l, 0, sum_of[first]), links_.back().i[l] = Index(first);
+        i_.resize(lanes * links_.size(), own), j_.resize(lanes * links_.size(), own);
       }
-      add_link(s, lane, j, sum_of[j]);
+      const Spring& s = network.springs[*next];
+      Links& to = links_.back();
+      const std::size_t k = lane % lanes, at = lanes * (links_.size() - 1) + k;
+      i_[at] = s.i, j_[at] = s.j == no_index ? static_cast<Index>(grains_) : s.j;
+      to.nx[k] = s.n.x, to.ny[k] = s.n.y, to.nz[k] = s.n.z;
+      to.tangential[k] = s.tangential, to.excess[k] = s.normal - s.tangential;
+      to.arm_i[k] = s.arm_i, to.arm_j[k] = s.arm_j;
     }
-    for (const Index j : foreign) sum_of[j] = none;
-    for (std::size_t g = first; g < last; ++g) sum_of[g] = none;
+    chunk_begin.push_back(lanes * links_.size());
   }
   assert(next == order.end());
-  chunks_.push_back({grains_, links_.size(), sums});
-  sums_.resize(sums);
-  halo_begin_.push_back(0);
-  for (const auto& list : halo) {
-    halo_sum_.insert(halo_sum_.end(), list.begin(), list.end());
-    halo_begin_.push_back(static_cast<std::uint32_t>(halo_sum_.size()));
-  }
+  make_schedule(schedule_, grains_ + 1, chunk_grains, j_, chunk_begin);  // the last "grain" takes what walls are given
+  first_links_.clear();
+  for (const auto c : chunk_begin) first_links_.push_back(c / lanes);
+  sums_.resize(2 * schedule_.rows());
 }
 
 template <int... component>
 void StiffnessOperator::load(std::size_t chunk, const double* x) const {
-  for (std::size_t g = chunks_[chunk].first_grain; g < chunks_[chunk + 1].first_grain; ++g) {
+  for (std::size_t g = chunk * chunk_grains; g < std::min(grains_, (chunk + 1) * chunk_grains); ++g) {
     double row[6] = {};
     const double* entry = x + g * sizeof...(component);
     ((row[component] = *entry++), ...);
     const double m = scale_[g], i = turn_scale_[g];
-    rows_[g] = {{m * row[0], m * row[1], m * row[2], 0}, {i * row[3], i * row[4], i * row[5], 0}};
+    u_[g] = {m * row[0], m * row[1], m * row[2], 0};
+    turn_[g] = {i * row[3], i * row[4], i * row[5], 0};
   }
 }
 
 void StiffnessOperator::sum(std::size_t chunk) const {
-  const Chunk &begin = chunks_[chunk], &end = chunks_[chunk + 1];
-  std::fill(sums_.begin() + static_cast<std::ptrdiff_t>(begin.first_sum),
-            sums_.begin() + static_cast<std::ptrdiff_t>(end.first_sum), Row{});
-  const Row* rows = rows_.data();
-  Row* sums = sums_.data();
-  Row* own = sums + (begin.first_sum - begin.first_grain);  // halo rows only add: never before the array
-  constexpr std::size_t ahead = 4;                          // blocks between a prefetch and its use
-  for (std::size_t b = begin.first_links; b < end.first_links; ++b) {
+  const std::size_t low = chunk * chunk_grains, high = std::min(grains_, low + chunk_grains);
+  Quad* sums = sums_.data();
+  std::fill(sums + 2 * low, sums + 2 * high, Quad{});
+  std::fill(sums + 2 * schedule_.halo_begin[chunk], sums + 2 * schedule_.halo_begin[chunk + 1], Quad{});
+  constexpr std::size_t ahead = 4;  // blocks between a prefetch and its use
+  for (std::size_t b = first_links_[chunk]; b < first_links_[chunk + 1]; ++b) {
     const Links& s = links_[b];
-    if (b + ahead < end.first_links) {
-      const Links& later = links_[b + ahead];
-      for (std::size_t k = 0; k < lanes; ++k) {
-        __builtin_prefetch(rows + later.j[k]);
-        __builtin_prefetch(sums + later.sum_j[k], 1);
+    const Index *i = &i_[lanes * b], *j = &j_[lanes * b], *to = &schedule_.target[lanes * b];
+    if (b + ahead < first_links_[chunk + 1])
+      for (std::size_t k = lanes * ahead; k < lanes * (ahead + 1); ++k) {
+        __builtin_prefetch(&u_[j[k]]), __builtin_prefetch(&turn_[j[k]]);
+        __builtin_prefetch(sums + 2 * to[k], 1);
       }
-    }
     const Vec<Batch> n{load_lanes(s.nx), load_lanes(s.ny), load_lanes(s.nz)};
     const Batch arm_i = load_lanes(s.arm_i), arm_j = load_lanes(s.arm_j);
-    const auto u_i = columns([&](int k) { return vector_of(rows[s.i[k]].u); });
-    const auto u_j = columns([&](int k) { return vector_of(rows[s.j[k]].u); });
-    const auto turn_i = columns([&](int k) { return vector_of(rows[s.i[k]].turn); });
-    const auto turn_j = columns([&](int k) { return vector_of(rows[s.j[k]].turn); });
-    const Vec<Batch> relative = u_j - u_i + cross(n, turn_i * arm_i + turn_j * arm_j);
+    const auto turn_i = xyz(load_rows<Batch>(turn_.data(), i)), turn_j = xyz(load_rows<Batch>(turn_.data(), j));
+    const Vec<Batch> relative =
+        xyz(load_difference<Batch>(u_.data(), i, j)) + cross(n, turn_i * arm_i + turn_j * arm_j);
     const Vec<Batch> force = relative * load_lanes(s.tangential) + n * (load_lanes(s.excess) * dot(n, relative));
-    const Vec<Batch> moment = cross(force, n);  // of unit arm, on either grain
-    const Batch zero(0.0);
-    Double4 f[8], m_i[8], m_j[8];
-    transpose_columns({force.x, force.y, force.z, zero}, f);
-    transpose_columns({moment.x * arm_i, moment.y * arm_i, moment.z * arm_i, zero}, m_i);
-    transpose_columns({moment.x * arm_j, moment.y * arm_j, moment.z * arm_j, zero}, m_j);
-    for (std::size_t k = 0; k < lanes; ++k) {
-      add(own[s.i[k]].u, -f[k]);
-      add(own[s.i[k]].turn, m_i[k]);
-      add(sums[s.sum_j[k]].u, f[k]);
-      add(sums[s.sum_j[k]].turn, m_j[k]);
-    }
+    add_contact<2, Batch>(sums, i, to, force, cross(force, n), arm_i, arm_j);
   }
 }
 
 template <int... component>
 void StiffnessOperator::store(std::size_t chunk, double* y) const {
-  const std::size_t first = chunks_[chunk].first_grain;
-  for (std::size_t g = first; g < chunks_[chunk + 1].first_grain; ++g) {
-    Row total = sums_[chunks_[chunk].first_sum + g - first];
-    for (auto h = halo_begin_[g]; h < halo_begin_[g + 1]; ++h) {
-      add(total.u, vector_of(sums_[halo_sum_[h]].u));
-      add(total.turn, vector_of(sums_[halo_sum_[h]].turn));
+  for (std::size_t g = chunk * chunk_grains; g < std::min(grains_, (chunk + 1) * chunk_grains); ++g) {
+    Vec3 u = sums_[2 * g].vec(), turn = sums_[2 * g + 1].vec();
+    for (Index h = schedule_.gather_begin[g]; h < schedule_.gather_begin[g + 1]; ++h) {
+      const std::size_t row = 2 * schedule_.gather_row[h];
+      u += sums_[row].vec(), turn += sums_[row + 1].vec();
     }
     const double m = scale_[g], i = turn_scale_[g];
-    const double row[6] = {m * total.u.x,    m * total.u.y,    m * total.u.z,
-                           i * total.turn.x, i * total.turn.y, i * total.turn.z};
+    const double row[6] = {m * u.x, m * u.y, m * u.z, i * turn.x, i * turn.y, i * turn.z};
     double* entry = y + g * sizeof...(component);
     ((*entry++ = row[component]), ...);
   }
@@ -161,7 +110,7 @@ void StiffnessOperator::store(std::size_t chunk, double* y) const {
 
 template <int... component>
 void StiffnessOperator::run(const double* x, double* y) const {
-  const std::size_t chunks = chunks_.size() - 1;
+  const std::size_t chunks = schedule_.chunks();
 #pragma omp parallel if (chunks > 1)
   {
 #pragma omp for schedule(static)

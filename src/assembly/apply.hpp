@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "assembly/network.hpp"
+#include "base/aligned.hpp"
+#include "state/schedule.hpp"
 
 namespace eg {
 
@@ -33,22 +35,13 @@ class StiffnessOperator {
   static constexpr std::size_t chunk_grains = 1024;
   static constexpr std::size_t lanes = 8;
 
-  struct alignas(64) Row {
-    Quad u, turn;
-  };
-  struct alignas(64) Links {  ///< what eight springs need; unused lanes are zero springs
+  struct alignas(64) Links {  ///< what eight springs need; unused lanes are zero springs of a grain with itself
     double nx[lanes] = {}, ny[lanes] = {}, nz[lanes] = {};
     double tangential[lanes] = {}, excess[lanes] = {};  ///< kt, kn − kt
     double arm_i[lanes] = {}, arm_j[lanes] = {};
-    Index i[lanes] = {}, j[lanes] = {};  ///< rows to read; a wall reads the row of zeros behind the grains
-    Index sum_j[lanes] = {};             ///< row of sums to add to; that of i follows from the chunk
-  };
-  struct Chunk {
-    std::size_t first_grain, first_links, first_sum;
   };
 
-  void build_chunks(const Network& network);
-  void add_link(const Spring& spring, std::size_t lane, Index j, Index sum_j);
+  void build_links(const Network& network);
   template <int... component>
   void run(const double* x, double* y) const;
   template <int... component>
@@ -61,9 +54,10 @@ class StiffnessOperator {
   bool solid_, rotation_;
   std::vector<double> scale_, turn_scale_;  ///< m^−½, I^−½ a grain
   std::vector<Links> links_;
-  std::vector<Chunk> chunks_;                         ///< one more than there are, as an end mark
-  std::vector<std::uint32_t> halo_begin_, halo_sum_;  ///< sums of other chunks for a grain, in chunk order
-  mutable std::vector<Row> rows_, sums_;
+  std::vector<Index> i_, j_;                ///< grains of each lane; a wall is the row of zeros behind the grains
+  std::vector<std::size_t> first_links_;    ///< of each chunk, and an end mark
+  Schedule schedule_;
+  mutable AlignedVector<Quad> u_, turn_, sums_;
 };
 
 }  // namespace eg

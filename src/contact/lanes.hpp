@@ -48,6 +48,19 @@ EG_INLINE Columns<S> load_weighted_sum(const Quad* rows, const Quad* weights, co
   }
 }
 
+/// Rows index[0…lanes) as they are.
+template <class S>
+EG_INLINE Columns<S> load_rows(const Quad* rows, const Index* index) {
+  if constexpr (lanes_of<S> == 1) {
+    const Quad& q = rows[index[0]];
+    return {q.x, q.y, q.z, q.w};
+  } else {
+    const auto row = [&](std::size_t k) { return quad_vector(rows[index[k]]); };
+    const auto c = transpose_rows(row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7));
+    return {c.x, c.y, c.z, c.w};
+  }
+}
+
 /// row i + row j; w is meaningless.
 template <class S>
 EG_INLINE Columns<S> load_sum(const Quad* rows, const Index* i, const Index* j) {
