@@ -105,7 +105,7 @@ std::vector<std::string> broken_assumptions(const Scene& scene, const State& sta
   if (state.policy.safe > 0 && state.dt > state.policy.safe * (1 + 1e-12))
     out.push_back(fmt::format("time step {:.4g} s is {:.2f} times the certified limit {:.4g} s: it may be unstable",
                               state.dt, state.dt / state.policy.safe, state.policy.safe));
-  if (scene.energy) {
+  if (scene.energy && scene.specimen.source == SpecimenSpec::Source::cloud) {  // others may begin with stored energy
     const EnergyTable e = energies(scene, state, status.kinetic);
     if (std::abs(e.residual) > 0.01 * std::abs(e.work))
       out.push_back(fmt::format("energy drift {:.2e} J is {:.1f} % of the work done (limit 1 %)", e.residual,
