@@ -88,7 +88,7 @@ void Controller::evaluate(State& state) {
   const Network net = linearise(scene_, state, closing(state, static_cast<double>(plan.horizon) * dt));
   const double cap = free_limit(state);
   const Sides sides(net);
-  plan.safe = std::min(cap, 2 / std::sqrt(splitting_bound(sides, {.matrix_sweeps = 0}).value));
+  plan.safe = std::min(cap, 2 / std::sqrt(splitting_bound(sides, {.scalar_sweeps = 8, .matrix_sweeps = 0}).value));
   const auto& spec = scene_.timestep;
   if (spec.policy == "certified")
     plan.dt = spec.safety * plan.safe;

@@ -52,4 +52,15 @@ inline State random_packing(const Scene& scene, const std::string& grading, std:
   return state;
 }
 
+/// A lattice pressed to an overlap of 1 % of the diameter, its radii then scattered (normal, standard deviation over
+/// mean), and relaxed.
+inline State scattered_lattice(const Scene& scene, double scatter, std::uint64_t seed = 1) {
+  Random random(seed);
+  Packing packing = make_packing(scene);
+  for (double& r : packing.radius) r *= 1 + scatter * random.normal();
+  State state = make_state(scene, packing);
+  relax(scene, state, 300);
+  return state;
+}
+
 }  // namespace eg::test
