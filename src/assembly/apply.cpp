@@ -111,7 +111,7 @@ void StiffnessOperator::store(std::size_t chunk, double* y) const {
 template <int... component>
 void StiffnessOperator::run(const double* x, double* y) const {
   const std::size_t chunks = schedule_.chunks();
-#pragma omp parallel if (chunks > 1)
+#pragma omp parallel if (chunks >= 4)
   {
 #pragma omp for schedule(static)
     for (std::size_t c = 0; c < chunks; ++c) load<component...>(c, x);

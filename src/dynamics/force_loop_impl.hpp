@@ -32,7 +32,7 @@ class ForceLoopOf final : public ForceLoop {
   Tally contacts(State& state, ForceWorkspace& work, double dt, const ForceOptions& options) const override {
     const std::size_t chunks = work.schedule.chunks();
     for (std::size_t c = 0; c < Cell::images; ++c) work.shift[c].set(state.cell.shift(static_cast<std::uint8_t>(c)));
-#pragma omp parallel for schedule(static) if (chunks > 1)
+#pragma omp parallel for schedule(static) if (chunks >= Contacts::worth_threads)
     for (std::size_t k = 0; k < chunks; ++k)
       work.tally[k] = run_chunk(state, work, k, dt, options);
     Tally total;

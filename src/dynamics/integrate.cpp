@@ -101,7 +101,7 @@ double drift(State& state, double dt) {
   state.cell.origin += (state.cell.rate * state.cell.origin) * dt;
   const Columns4 f = columns(state.cell.h * inverse(state.list.reference_cell));
   std::vector<double> largest(chunks_of(g.size()), 0.0);
-#pragma omp parallel for schedule(static) if (largest.size() > 1)
+#pragma omp parallel for schedule(static) if (largest.size() >= Contacts::worth_threads)
   for (std::size_t k = 0; k < largest.size(); ++k) {
     double most = 0;
     for (std::size_t i = k * chunk; i < std::min(g.size(), (k + 1) * chunk); ++i) {
@@ -123,7 +123,7 @@ double drift(State& state, double dt) {
 KickSums kick(State& state, const ForceWorkspace& work, double dt, const KickOptions& options, bool works) {
   const std::size_t n = state.grains.size();
   std::vector<KickSums> sums(chunks_of(n));
-#pragma omp parallel for schedule(static) if (sums.size() > 1)
+#pragma omp parallel for schedule(static) if (sums.size() >= Contacts::worth_threads)
   for (std::size_t k = 0; k < sums.size(); ++k) {
     const std::size_t low = k * chunk, high = std::min(n, low + chunk);
     sums[k] = works ? kick_chunk<true>(state, work, low, high, dt, options)

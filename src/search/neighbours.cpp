@@ -17,7 +17,7 @@ void wrap(State& state) {
   auto& grains = state.grains;
   std::vector<std::array<std::int8_t, 3>> moved(grains.size());
   const Mat3 inv = inverse(state.cell.h);
-#pragma omp parallel for if (grains.size() > Contacts::chunk)
+#pragma omp parallel for if (grains.size() >= Contacts::worth_threads * Contacts::chunk)
   for (std::size_t i = 0; i < grains.size(); ++i) {
     const Vec3 s = inv * (grains.position[i].vec() - state.cell.origin);
     Vec3 back;
@@ -65,7 +65,7 @@ void fill_rows(NeighbourList& list, std::vector<NearPair>& pairs, std::size_t gr
   auto next = list.begin;
   std::vector<NearPair> sorted(pairs.size());
   for (const auto& p : pairs) sorted[next[p.i]++] = p;
-#pragma omp parallel for schedule(dynamic, 1024) if (grains > Contacts::chunk)
+#pragma omp parallel for schedule(dynamic, 1024) if (grains >= Contacts::worth_threads * Contacts::chunk)
   for (std::size_t i = 0; i < grains; ++i)
     std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(list.begin[i]),
               sorted.begin() + static_cast<std::ptrdiff_t>(list.begin[i + 1]),
@@ -119,7 +119,7 @@ void refresh_contacts(State& state) {
   for (std::size_t c = 0; c < Cell::images; ++c) shift[c] = state.cell.shift(static_cast<std::uint8_t>(c));
 
   std::vector<std::vector<Row>> rows(chunks);
-#pragma omp parallel for schedule(dynamic) if (chunks > 1)
+#pragma omp parallel for schedule(dynamic) if (chunks >= Contacts::worth_threads)
   for (std::size_t k = 0; k < chunks; ++k) {
     const std::size_t low = k * Contacts::chunk, high = std::min(n, low + Contacts::chunk);
     auto o =
@@ -151,7 +151,7 @@ void refresh_contacts(State& state) {
   const std::size_t total = fresh.chunk_begin.back();
   fresh.i.resize(total), fresh.j.resize(total), fresh.image.resize(periodic ? total : 0);
   fresh.history.assign(total * fresh.history_size, 0.0);
-#pragma omp parallel for schedule(dynamic) if (chunks > 1)
+#pragma omp parallel for schedule(dynamic) if (chunks >= Contacts::worth_threads)
   for (std::size_t k = 0; k < chunks; ++k) {
     std::size_t c = fresh.chunk_begin[k];
     for (const auto& row : rows[k]) {

@@ -31,6 +31,7 @@ struct Grains {
 /// `lanes` by entries with i == j in the home image. Loop over contacts with is_padding() in mind.
 struct Contacts {
   static constexpr std::size_t lanes = 8, chunk = 1024;
+  static constexpr std::size_t worth_threads = 4;  ///< chunks from which starting threads pays
   std::vector<Index> i, j;
   std::vector<std::uint8_t> image;       ///< code of Cell::shift; empty when no direction is periodic
   std::vector<double> history;           ///< blocks [value][lane] of eight contacts; vectors first (shear force on i [N])
