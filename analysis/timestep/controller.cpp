@@ -1,6 +1,6 @@
 #include "timestep/controller.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -46,9 +46,8 @@ double estimated_step(const Scene& scene, const Network& net, const std::string&
     names.push_back(row.name);
   }
   if (rows.empty()) return INFINITY;
-  throw InputError(
-      fmt::format("{}: timestep.policy = \"estimate:{}\" is not a rule that this scene allows; did you mean \"{}\"?",
-                  scene.file, name, nearest(name, names).empty() ? names.front() : nearest(name, names)));
+  throw InputError(fmt::format("{}: timestep.policy = \"estimate:{}\" is not a rule that this scene allows; known here: {}",
+                               scene.file, name, fmt::join(names, ", ")));
 }
 
 /// As λmax is now, seen from below; what it is held against must be seen from below too.
