@@ -1,6 +1,5 @@
 // eigengrain: discrete elements with a proved time step.
 #include <fmt/format.h>
-
 #include <unistd.h>
 
 #include <algorithm>
@@ -26,8 +25,8 @@ void check_subcommand(const CLI::App& app, int argc, char** argv) {
       meant.empty() ? "`eigengrain --help` lists what there is" : fmt::format("did you mean \"{}\"?", meant)));
 }
 
-/// Threads of OpenMP wait in a loop, by default so long that a machine with other work on it slows a run down tenfold. How
-/// long they do is read from the environment when the program is loaded: set it and start over.
+/// Threads of OpenMP wait in a loop, by default so long that a machine with other work on it slows a run down tenfold.
+/// How long they do is read from the environment when the program is loaded: set it and start over.
 void be_patient(char** argv) {
   if (std::getenv("GOMP_SPINCOUNT") || std::getenv("OMP_WAIT_POLICY")) return;
   ::setenv("GOMP_SPINCOUNT", "3000", 1);  // some 100 µs, longer than the gaps between the loops of a step

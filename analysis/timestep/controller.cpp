@@ -46,8 +46,9 @@ double estimated_step(const Scene& scene, const Network& net, const std::string&
     names.push_back(row.name);
   }
   if (rows.empty()) return INFINITY;
-  throw InputError(fmt::format("{}: timestep.policy = \"estimate:{}\" is not a rule that this scene allows; known here: {}",
-                               scene.file, name, fmt::join(names, ", ")));
+  throw InputError(
+      fmt::format("{}: timestep.policy = \"estimate:{}\" is not a rule that this scene allows; known here: {}",
+                  scene.file, name, fmt::join(names, ", ")));
 }
 
 /// As λmax is now, seen from below; what it is held against must be seen from below too.

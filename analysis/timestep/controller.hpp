@@ -19,10 +19,10 @@ struct ControllerLog {
 /// thumb. All of them are held against the certified limit.
 ///
 /// The certificate is the contact-splitting bound of the springs as they can be at the end of the horizon: every listed
-/// pair at the overlap it reaches with half as much again as its present closing speed. λmax is monotone in every stiffness and in the
-/// set of contacts, so the bound holds for all steps in between unless a contact outruns that forecast; safety < 1
-/// covers this. The step never exceeds that of the lightest grain with twelve contacts at an overlap of 1e-6 radii,
-/// which governs while little or nothing touches.
+/// pair at the overlap it reaches with half as much again as its present closing speed. λmax is monotone in every
+/// stiffness and in the set of contacts, so the bound holds for all steps in between unless a contact outruns that
+/// forecast; safety < 1 covers this. The step never exceeds that of the lightest grain with twelve contacts at an
+/// overlap of 1e-6 radii, which governs while little or nothing touches.
 class Controller final : public StepPolicy {
  public:
   explicit Controller(const Scene& scene) : scene_(scene) {}

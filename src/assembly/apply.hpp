@@ -54,8 +54,8 @@ class StiffnessOperator {
   bool solid_, rotation_;
   std::vector<double> scale_, turn_scale_;  ///< m^−½, I^−½ a grain
   std::vector<Links> links_;
-  std::vector<Index> i_, j_;                ///< grains of each lane; a wall is the row of zeros behind the grains
-  std::vector<std::size_t> first_links_;    ///< of each chunk, and an end mark
+  std::vector<Index> i_, j_;              ///< grains of each lane; a wall is the row of zeros behind the grains
+  std::vector<std::size_t> first_links_;  ///< of each chunk, and an end mark
   Schedule schedule_;
   mutable AlignedVector<Quad> u_, turn_, sums_;
 };

@@ -36,7 +36,8 @@ TangentBlock tangent(const ContactPoint& p, const State& state,
   for (std::size_t h = 0; h < history.size(); ++h)
     history[h] = wall ? D12(state.wall_contacts[p.entry].history[h]) : D12(state.contacts.history_at(p.entry, h));
   const auto c = broadcast_struct<typename Law::template Constants<D12>, D12>(constants);
-  const auto f = interact<Law, false>(Law::template pair<D12>(c, wall ? wall_sizes(ri) : grain_sizes(ri, rj)), g, inc, true, history, Dashpot<D12>{});
+  const auto f = interact<Law, false>(Law::template pair<D12>(c, wall ? wall_sizes(ri) : grain_sizes(ri, rj)), g, inc,
+                                      true, history, Dashpot<D12>{});
 
   const Vec<D12> on_i = -f.on_j, moment_i = f.moment * g.arm_i, moment_j = f.moment * g.arm_j;
   TangentBlock block{p.i, p.j, {}};

@@ -8,10 +8,10 @@ namespace eg {
 
 template <class S>
 struct Geometry {
-  Vec<S> n;          ///< unit, from i to j
-  S overlap;         ///< δ [m], > 0 when touching
-  S shorten;         ///< how far inside the surface the contact point lies [m]
-  S arm_i, arm_j;    ///< distance of the contact point from each centre, R − shorten [m]
+  Vec<S> n;        ///< unit, from i to j
+  S overlap;       ///< δ [m], > 0 when touching
+  S shorten;       ///< how far inside the surface the contact point lies [m]
+  S arm_i, arm_j;  ///< distance of the contact point from each centre, R − shorten [m]
 };
 
 /// How far along the branch the contact point lies. `middle`: the middle of the overlap, a = R − δ/2, so that the arms

@@ -39,7 +39,8 @@ ForceRow gather_row(const ForceWorkspace& work, std::size_t i) {
     if (work.stride == 2) sum.moment += work.rows[2 * row + 1].vec();
   };
   add(i);
-  for (Index h = work.schedule.gather_begin[i]; h < work.schedule.gather_begin[i + 1]; ++h) add(work.schedule.gather_row[h]);
+  for (Index h = work.schedule.gather_begin[i]; h < work.schedule.gather_begin[i + 1]; ++h)
+    add(work.schedule.gather_row[h]);
   return sum;
 }
 

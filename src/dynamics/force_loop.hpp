@@ -27,9 +27,9 @@ struct Tally {
 struct ForceWorkspace {
   Schedule schedule;
   AlignedVector<Quad> rows;
-  std::size_t stride = 2;                 ///< quads a row: 2 with moments, else 1
-  std::vector<Tally> tally;               ///< a chunk
-  std::vector<Quad> shift;                ///< translation of each image
+  std::size_t stride = 2;    ///< quads a row: 2 with moments, else 1
+  std::vector<Tally> tally;  ///< a chunk
+  std::vector<Quad> shift;   ///< translation of each image
 };
 
 /// What the loop adds up: nothing, stress and stiffness, or works and force statistics too.

@@ -33,8 +33,7 @@ class ForceLoopOf final : public ForceLoop {
     const std::size_t chunks = work.schedule.chunks();
     for (std::size_t c = 0; c < Cell::images; ++c) work.shift[c].set(state.cell.shift(static_cast<std::uint8_t>(c)));
 #pragma omp parallel for schedule(static) if (chunks >= Contacts::worth_threads)
-    for (std::size_t k = 0; k < chunks; ++k)
-      work.tally[k] = run_chunk(state, work, k, dt, options);
+    for (std::size_t k = 0; k < chunks; ++k) work.tally[k] = run_chunk(state, work, k, dt, options);
     Tally total;
     for (std::size_t k = 0; k < chunks; ++k) total += work.tally[k];
     return total;
@@ -47,7 +46,8 @@ class ForceLoopOf final : public ForceLoop {
   Tally run_chunk(State& state, ForceWorkspace& work, std::size_t k, double dt, const ForceOptions& options) const {
     const bool damped = options.normal_ratio > 0 || options.shear_ratio > 0;
     if (options.scalar)
-      return damped ? chunk<double, true>(state, work, k, dt, options) : chunk<double, false>(state, work, k, dt, options);
+      return damped ? chunk<double, true>(state, work, k, dt, options)
+                    : chunk<double, false>(state, work, k, dt, options);
     return damped ? chunk<Batch, true>(state, work, k, dt, options) : chunk<Batch, false>(state, work, k, dt, options);
   }
 
@@ -69,8 +69,8 @@ class ForceLoopOf final : public ForceLoop {
     S arm_i, arm_j;
   };
 
-  /// Contacts go through in blocks, each in three passes: gather, law, scatter. One pass over all three would be a chain of
-  /// operations too long for the processor to overlap with the next one.
+  /// Contacts go through in blocks, each in three passes: gather, law, scatter. One pass over all three would be a
+  /// chain of operations too long for the processor to overlap with the next one.
   template <class S, bool damped>
   Tally chunk(State& state, ForceWorkspace& work, std::size_t k, double dt, const ForceOptions& options) const {
     constexpr std::size_t lanes = lanes_of<S>, block = lanes == 1 ? 1 : 8;
@@ -89,7 +89,8 @@ class ForceLoopOf final : public ForceLoop {
     const std::size_t end = list.chunk_begin[k + 1];
     for (std::size_t c = list.chunk_begin[k]; c < end; c += block * lanes) {
       const std::size_t count = std::min(block, (end - c) / lanes);
-      if (prefetch && c + block * lanes < end) fetch(state, work, c + block * lanes, std::min(end, c + 2 * block * lanes));
+      if (prefetch && c + block * lanes < end)
+        fetch(state, work, c + block * lanes, std::min(end, c + 2 * block * lanes));
       for (std::size_t b = 0; b < count; ++b) gather<S>(in[b], state, work, c + b * lanes);
       for (std::size_t b = 0; b < count; ++b)
         respond<S, damped>(out[b], in[b], affine, state, c + b * lanes, dt, options, sums);
@@ -126,8 +127,8 @@ class ForceLoopOf final : public ForceLoop {
   }
 
   template <class S, bool damped>
-  EG_INLINE void respond(Outgoing<S>& out, const Incoming<S>& in, const Mat<S>& affine, State& state, std::size_t c, double dt,
-                         const ForceOptions& options, Sums<S>& sums) const {
+  EG_INLINE void respond(Outgoing<S>& out, const Incoming<S>& in, const Mat<S>& affine, State& state, std::size_t c,
+                         double dt, const ForceOptions& options, Sums<S>& sums) const {
     Contacts& list = state.contacts;
     const S rj = in.sum - in.ri;
     const auto g = grain_grain(in.branch, in.ri, in.sum, options.arms);
@@ -143,8 +144,8 @@ class ForceLoopOf final : public ForceLoop {
     for (std::size_t h = 0; h < history.size(); ++h) history[h] = load_values<S>(stored + h * Contacts::lanes);
     Dashpot<S> dashpot;
     if constexpr (damped)
-      dashpot = {S(options.normal_ratio), S(options.shear_ratio), select(in.inverse_mass > S(0.0), S(1.0) / in.inverse_mass, S(0.0)),
-                 S(dt > 0 ? 1 / dt : 0)};
+      dashpot = {S(options.normal_ratio), S(options.shear_ratio),
+                 select(in.inverse_mass > S(0.0), S(1.0) / in.inverse_mass, S(0.0)), S(dt > 0 ? 1 / dt : 0)};
     const auto pair = Law::template pair<S>(constants<S>(state, c), grain_sizes(in.ri, rj));
     const ContactForce<S> f = interact<Law, damped>(pair, g, inc, touching, history, dashpot);
     for (std::size_t h = 0; h < history.size(); ++h) store_values(stored + h * Contacts::lanes, history[h]);
@@ -231,7 +232,7 @@ Tally ForceLoopOf<Law, rotation>::walls(State& state, ForceWorkspace& work, doub
     const Quad& p = state.grains.position[c.grain];
     const Quad& v = state.grains.velocity[c.grain];
     const auto g = grain_plane<double>(dot(p.vec() - wall.point, wall.normal), wall.normal, p.w, options.arms);
-        const Vec3 turned = rotation ? state.grains.spin[c.grain].vec() * dt : Vec3{};
+    const Vec3 turned = rotation ? state.grains.spin[c.grain].vec() * dt : Vec3{};
     const auto motion = wall_motion<double>((wall.velocity - v.vec()) * dt, turned, p.w);
     const auto inc = increment<rotation>(g, motion);
     const auto& constants = constants_[state.grains.material_of(c.grain) * kinds_ + wall.material];

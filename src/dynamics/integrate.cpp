@@ -52,7 +52,7 @@ EG_INLINE void kick_one(Double4& velocity, Double4 force, double dt, double loca
   const double inverse = velocity[3];
   if (!(inverse > 0)) return;
   const Double4 before = velocity;
-  Double4 rate = force * inverse + gravity;                  // acceleration by contacts and weight
+  Double4 rate = force * inverse + gravity;  // acceleration by contacts and weight
   const Double4 damping = local > 0 ? local_force(rate, before, local) : Double4{};
   Double4 rest = before * -drag;
   if (affine) rest -= times(*affine, before);
@@ -79,9 +79,11 @@ KickSums kick_chunk(State& state, const ForceWorkspace& work, std::size_t low, s
   const bool moments = g.rotates() && work.stride == 2;
   KickSums sums;
   for (std::size_t i = low; i < high; ++i) {
-    kick_one<works>(vector(g.velocity[i]), gather_quad(work, i, 0), dt, options.local, options.mass, &affine, gravity, sums);
+    kick_one<works>(vector(g.velocity[i]), gather_quad(work, i, 0), dt, options.local, options.mass, &affine, gravity,
+                    sums);
     if (moments)
-      kick_one<works>(vector(g.spin[i]), gather_quad(work, i, 1), dt, options.local, options.mass, nullptr, Double4{}, sums);
+      kick_one<works>(vector(g.spin[i]), gather_quad(work, i, 1), dt, options.local, options.mass, nullptr, Double4{},
+                      sums);
   }
   return sums;
 }

@@ -46,10 +46,11 @@ double record_interval(const StageSpec& s) {
   return given(s.record_every_steps) || given(s.record_every_strain) ? s.record_every_steps : 1000;
 }
 
-/// What a step must add up: all that checks and rows need at every tenth step and where a row falls by steps, the stress
-/// for a servo or for rows by strain, else nothing.
+/// What a step must add up: all that checks and rows need at every tenth step and where a row falls by steps, the
+/// stress for a servo or for rows by strain, else nothing.
 TallyLevel tally_level(const State& state, const StageSpec& s) {
-  if (state.stage_step % 10 == 0 || every(state, record_interval(s)) || every(state, s.until_steps)) return TallyLevel::works;
+  if (state.stage_step % 10 == 0 || every(state, record_interval(s)) || every(state, s.until_steps))
+    return TallyLevel::works;
   bool servo = s.mean_stress.has_value() || given(s.record_every_strain);
   for (const auto& c : s.control) servo = servo || c.kind == ComponentControl::Kind::stress;
   return servo ? TallyLevel::stress : TallyLevel::none;

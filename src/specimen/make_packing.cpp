@@ -23,7 +23,8 @@ NormalForce normal_force(const Scene& scene) {
     using Law = decltype(law);
     const auto constants = Law::constants(scene.materials.at(0), scene.materials.at(0), scene.dimension);
     force = [constants](double radius, double overlap) {
-      return Law::template normal<double>(Law::template pair<double>(constants, grain_sizes(radius, radius)), overlap).force;
+      return Law::template normal<double>(Law::template pair<double>(constants, grain_sizes(radius, radius)), overlap)
+          .force;
     };
   });
   if (!force)

@@ -47,7 +47,8 @@ class Gatherer {
       p.branch = wall.normal * -height;
       p.geometry = grain_plane(height, wall.normal, radius, arms_);
       if (state_.contacts.history_vectors > 0) p.shear = {contact.history[0], contact.history[1], contact.history[2]};
-      respond(p, Law::template pair<double>(constants_[g.material_of(p.i) * kinds_ + wall.material], wall_sizes(radius)),
+      respond(p,
+              Law::template pair<double>(constants_[g.material_of(p.i) * kinds_ + wall.material], wall_sizes(radius)),
               visit, growth);
     }
   }

@@ -13,11 +13,11 @@ namespace eg {
 
 /// Grains as quads. Arrays that a scene does not need stay empty (rotation, fixed, material).
 struct Grains {
-  std::vector<Quad> position;            ///< centre x, y, z [m]; w = radius [m]
-  std::vector<Quad> velocity;            ///< peculiar velocity c = v − L·x [m/s]; w = 1/m [1/kg], 0 for a fixed grain
-  std::vector<Quad> spin;                ///< angular velocity [rad/s]; w = 1/I [1/(kg m²)]; empty without rotation
-  std::vector<Index> id;                 ///< the user's number; the order of grains changes (spatial sort), ids stay
-  std::vector<std::uint16_t> material;   ///< index into Scene::materials; empty: all 0
+  std::vector<Quad> position;           ///< centre x, y, z [m]; w = radius [m]
+  std::vector<Quad> velocity;           ///< peculiar velocity c = v − L·x [m/s]; w = 1/m [1/kg], 0 for a fixed grain
+  std::vector<Quad> spin;               ///< angular velocity [rad/s]; w = 1/I [1/(kg m²)]; empty without rotation
+  std::vector<Index> id;                ///< the user's number; the order of grains changes (spatial sort), ids stay
+  std::vector<std::uint16_t> material;  ///< index into Scene::materials; empty: all 0
 
   std::size_t size() const { return position.size(); }
   bool rotates() const { return !spin.empty(); }
@@ -25,25 +25,28 @@ struct Grains {
   std::uint16_t material_of(std::size_t i) const { return material.empty() ? std::uint16_t{0} : material[i]; }
 };
 
-/// Pairs that touch, or may touch before the next refresh of the list, with their history. Sorted by i, then j, then image.
-/// The branch vector of a pair is x_j + cell.shift(image) − x_i; one pair may be i == j through an image of itself.
-/// Grains are taken in chunks of `chunk`; the contacts of a chunk (those whose i lies in it) are padded to whole blocks of
-/// `lanes` by entries with i == j in the home image. Loop over contacts with is_padding() in mind.
+/// Pairs that touch, or may touch before the next refresh of the list, with their history. Sorted by i, then j, then
+/// image. The branch vector of a pair is x_j + cell.shift(image) − x_i; one pair may be i == j through an image of
+/// itself. Grains are taken in chunks of `chunk`; the contacts of a chunk (those whose i lies in it) are padded to
+/// whole blocks of `lanes` by entries with i == j in the home image. Loop over contacts with is_padding() in mind.
 struct Contacts {
   static constexpr std::size_t lanes = 8, chunk = 1024;
   static constexpr std::size_t worth_threads = 4;  ///< chunks from which starting threads pays
   std::vector<Index> i, j;
-  std::vector<std::uint8_t> image;       ///< code of Cell::shift; empty when no direction is periodic
-  std::vector<double> history;           ///< blocks [value][lane] of eight contacts; vectors first (shear force on i [N])
-  std::vector<std::uint64_t> chunk_begin;///< contacts of chunk k: [chunk_begin[k], chunk_begin[k+1]), multiples of `lanes`
-  std::size_t history_size = 0;          ///< values a contact, fixed by the law
-  std::size_t history_vectors = 0;       ///< how many 3-vectors lead them
-  std::size_t tail_vectors = 0;          ///< how many 3-vectors end them (dashpot force [N], only with an energy ledger)
+  std::vector<std::uint8_t> image;  ///< code of Cell::shift; empty when no direction is periodic
+  std::vector<double> history;      ///< blocks [value][lane] of eight contacts; vectors first (shear force on i [N])
+  std::vector<std::uint64_t>
+      chunk_begin;                  ///< contacts of chunk k: [chunk_begin[k], chunk_begin[k+1]), multiples of `lanes`
+  std::size_t history_size = 0;     ///< values a contact, fixed by the law
+  std::size_t history_vectors = 0;  ///< how many 3-vectors lead them
+  std::size_t tail_vectors = 0;     ///< how many 3-vectors end them (dashpot force [N], only with an energy ledger)
 
   std::size_t size() const { return i.size(); }
   std::uint8_t image_of(std::size_t c) const { return image.empty() ? Cell::home : image[c]; }
   bool is_padding(std::size_t c) const { return i[c] == j[c] && image_of(c) == Cell::home; }
-  double& history_at(std::size_t c, std::size_t k) { return history[(c / lanes * history_size + k) * lanes + c % lanes]; }
+  double& history_at(std::size_t c, std::size_t k) {
+    return history[(c / lanes * history_size + k) * lanes + c % lanes];
+  }
   double history_at(std::size_t c, std::size_t k) const {
     return history[(c / lanes * history_size + k) * lanes + c % lanes];
   }
@@ -51,58 +54,58 @@ struct Contacts {
 
 /// A plane that grains cannot cross; they lie on the side of its normal.
 struct Wall {
-  Vec3 point, normal;                    ///< [m], unit
-  Vec3 velocity;                         ///< [m/s]
+  Vec3 point, normal;  ///< [m], unit
+  Vec3 velocity;       ///< [m/s]
   std::uint16_t material = 0;
-  Vec3 force;                            ///< force of the grains on the wall in the last step [N]
-  double moved = 0;                      ///< path along the normal since contacts were last refreshed [m]
+  Vec3 force;        ///< force of the grains on the wall in the last step [N]
+  double moved = 0;  ///< path along the normal since contacts were last refreshed [m]
 };
 
 struct WallContact {
   Index grain = 0, wall = 0;
-  std::array<double, 8> history{};       ///< as Contacts::history, seen from the grain as i and the wall as j
+  std::array<double, 8> history{};  ///< as Contacts::history, seen from the grain as i and the wall as j
 };
 
 /// Work and dissipation so far [J] (2D: per metre of thickness). Kept only when Scene::energy.
 struct EnergyLedger {
-  double shear_work = 0;        ///< work put into tangential springs and sliders (elastic + friction + path dependence)
-  double friction = 0;          ///< dissipated by sliding
+  double shear_work = 0;  ///< work put into tangential springs and sliders (elastic + friction + path dependence)
+  double friction = 0;    ///< dissipated by sliding
   double local_damping = 0, mass_damping = 0, viscous_damping = 0;  ///< dissipated
-  double boundary = 0;          ///< work done on the grains by the cell and the walls
-  double body = 0;              ///< work done by gravity
+  double boundary = 0;  ///< work done on the grains by the cell and the walls
+  double body = 0;      ///< work done by gravity
 };
 
 /// What the step policy has planned; part of the state so that a resumed run goes on alike.
 struct StepPlan {
-  std::uint64_t due = 0;        ///< step of the next evaluation; 0: at once
-  double dt = 0;                ///< step in force [s]
-  double safe = 0;              ///< certified limit of the step [s]
-  std::uint64_t horizon = 0;    ///< steps an evaluation looks ahead
+  std::uint64_t due = 0;      ///< step of the next evaluation; 0: at once
+  double dt = 0;              ///< step in force [s]
+  double safe = 0;            ///< certified limit of the step [s]
+  std::uint64_t horizon = 0;  ///< steps an evaluation looks ahead
 };
 
 struct State {
   int dimension = 3;
-  double time = 0;              ///< [s]
+  double time = 0;  ///< [s]
   std::uint64_t step = 0;
-  double dt = 0;                ///< step that led here [s]; velocities belong to time − dt/2
+  double dt = 0;  ///< step that led here [s]; velocities belong to time − dt/2
   Cell cell;
   Grains grains;
   Contacts contacts;
   NeighbourList list;
   std::vector<Wall> walls;
   std::vector<WallContact> wall_contacts;
-  Mat3 virial;                  ///< Σ f ⊗ branch over contacts of the last step, f on j [J]; stress is virial/volume
-  double stiffness_sum = 0;     ///< Σ kn d² over contacts of the last step [J]
+  Mat3 virial;               ///< Σ f ⊗ branch over contacts of the last step, f on j [J]; stress is virial/volume
+  double stiffness_sum = 0;  ///< Σ kn d² over contacts of the last step [J]
   EnergyLedger ledger;
-  std::vector<double> friction; ///< µ in force per material (a stage may have replaced the scene's)
-  std::size_t stage = 0;        ///< stage under way, and the state it began from
+  std::vector<double> friction;  ///< µ in force per material (a stage may have replaced the scene's)
+  std::size_t stage = 0;         ///< stage under way, and the state it began from
   std::uint64_t stage_step = 0;
   double stage_time = 0;
-  Mat3 stage_cell;              ///< cell matrix when the stage began
-  double unbalanced = 1;        ///< mean net force over mean contact force at the last check [-]
-  double kinetic = 0;           ///< kinetic energy at the last check [J]
+  Mat3 stage_cell;        ///< cell matrix when the stage began
+  double unbalanced = 1;  ///< mean net force over mean contact force at the last check [-]
+  double kinetic = 0;     ///< kinetic energy at the last check [J]
   StepPlan policy;
-  std::array<double, 6> servo{};///< integral part of the cell controller [1/s]
+  std::array<double, 6> servo{};  ///< integral part of the cell controller [1/s]
 };
 
 }  // namespace eg

@@ -35,7 +35,8 @@ void print_row(const char* kind, const Scene& scene, State& state) {
   StepInterval interval;
   SplittingBound splitting;
   const double assembly = time_of(3, [&] { network = linearise(scene, state); });
-  const double cheap = time_of(3, [&] { splitting = splitting_bound(network, {.scalar_sweeps = 8, .matrix_sweeps = 0}); });
+  const double cheap =
+      time_of(3, [&] { splitting = splitting_bound(network, {.scalar_sweeps = 8, .matrix_sweeps = 0}); });
   const double whole = time_of(3, [&] { interval = step_interval(network, {.dense_limit = 0}); });
   fmt::print("{:<18} {:>8} {:>9} {:>9.3f} {:>9.1f} {:>9.1e} {:>9.1f} {:>9.1e}  {}\n", kind, network.size(),
              network.springs.size(), 1e3 * step, (assembly + cheap) / step, splitting.value / interval.lambda_lower - 1,

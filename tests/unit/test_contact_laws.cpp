@@ -40,7 +40,8 @@ TEST(HertzMindlin, CheckValues) {
 }
 
 TEST(HertzMindlin, RescalingShortensShearOnUnloadingOnly) {
-  const auto p = HertzMindlinRescale::pair<double>(HertzMindlinRescale::constants(both(), both(), 3), grain_sizes(1e-3, 1e-3));
+  const auto p =
+      HertzMindlinRescale::pair<double>(HertzMindlinRescale::constants(both(), both(), 3), grain_sizes(1e-3, 1e-3));
   ContactHistory<HertzMindlinRescale, double> h{};
   const Vec3 zero{};
   HertzMindlinRescale::respond<double>(p, {1e-6, {1e-8, 0, 0}}, h);
@@ -91,11 +92,12 @@ std::vector<S> forces(const Sample<Law>& s) {
   const auto table = Law::constants(both(), both(), 3);
   const auto c = broadcast_struct<typename Law::template Constants<S>, S>(table);
   const auto g = grain_grain<S>(lift<S>(s.branch), S(s.ri), S(s.ri) + S(s.rj), Arms::middle);
-  const auto inc = increment<true>(g, motion_of<S>(lift<S>(s.uj - s.ui), lift<S>(s.ti), S(s.ri), lift<S>(s.tj), S(s.rj)));
+  const auto inc =
+      increment<true>(g, motion_of<S>(lift<S>(s.uj - s.ui), lift<S>(s.ti), S(s.ri), lift<S>(s.tj), S(s.rj)));
   ContactHistory<Law, S> h;
   for (std::size_t k = 0; k < h.size(); ++k) h[k] = S(s.history[k]);
-  const auto f =
-      interact<Law, false>(Law::template pair<S>(c, grain_sizes(S(s.ri), S(s.rj))), g, inc, g.overlap > S(0.0), h, Dashpot<S>{});
+  const auto f = interact<Law, false>(Law::template pair<S>(c, grain_sizes(S(s.ri), S(s.rj))), g, inc,
+                                      g.overlap > S(0.0), h, Dashpot<S>{});
   std::vector<S> out{f.on_j.x, f.on_j.y, f.on_j.z};
   if constexpr (Law::history_vectors > 0)
     for (const auto& m : {f.moment * g.arm_i, f.moment * g.arm_j}) out.insert(out.end(), {m.x, m.y, m.z});
@@ -197,7 +199,8 @@ TEST(Batch, ContactsAddUpOnOneGrainInSeveralLanes) {
   std::array<Quad, 12> batch{}, scalar{};
   add_contact<2, Batch>(batch.data(), i.data(), j.data(), f, m, ai, aj);
   for (std::size_t k = 0; k < 8; ++k)
-    add_contact<2, double>(scalar.data(), &i[k], &j[k], {f.x[k], f.y[k], f.z[k]}, {m.x[k], m.y[k], m.z[k]}, ai[k], aj[k]);
+    add_contact<2, double>(scalar.data(), &i[k], &j[k], {f.x[k], f.y[k], f.z[k]}, {m.x[k], m.y[k], m.z[k]}, ai[k],
+                           aj[k]);
   for (std::size_t q = 0; q < 12; ++q) {
     EXPECT_NEAR(batch[q].x, scalar[q].x, 1e-14);
     EXPECT_NEAR(batch[q].y, scalar[q].y, 1e-14);

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "assembly/linearise.hpp"
 #include "boundary/cell_control.hpp"
 #include "contact/laws.hpp"
 #include "dynamics/engine.hpp"
 #include "state/gather.hpp"
-#include "assembly/linearise.hpp"
 #include "support/scenes.hpp"
 #include "timestep/interval.hpp"
 
@@ -17,12 +17,14 @@ using namespace eg;
 
 namespace {
 
-/// Kinetic energy at the time of the last forces plus stored energy plus what was dissipated minus work done from outside.
+/// Kinetic energy at the time of the last forces plus stored energy plus what was dissipated minus work done from
+/// outside.
 double energy_balance(const Scene& scene, const State& state, const Engine& engine) {
   double stored = 0;
   visit_contacts(scene, state, [&](const ContactPoint& p) { stored += p.normal_energy; });
   const auto& e = state.ledger;
-  return engine.kick_sums().kinetic + stored + e.shear_work + e.local_damping + e.mass_damping + e.viscous_damping - e.boundary - e.body;
+  return engine.kick_sums().kinetic + stored + e.shear_work + e.local_damping + e.mass_damping + e.viscous_damping -
+         e.boundary - e.body;
 }
 
 State two_spheres(const Scene& scene, double radius, double speed, Vec3 direction) {
@@ -67,7 +69,8 @@ TEST(Momentum, ConservedToRoundOffInACollidingCluster) {
       scene.damping.normal_ratio = 0.1, scene.damping.shear_ratio = 0.1;
       State state = test::cluster(scene, 200, 5, 0.8);
       Random random(1);
-      for (auto& v : state.grains.velocity) v.x += random.normal(), v.y += random.normal(), v.z += dimension == 3 ? random.normal() : 0;
+      for (auto& v : state.grains.velocity)
+        v.x += random.normal(), v.y += random.normal(), v.z += dimension == 3 ? random.normal() : 0;
       Engine engine(scene, state);
       const auto sums = [&] {
         std::array<Vec3, 2> s{};
@@ -114,7 +117,8 @@ TEST(Energy, LedgerClosesInACompression) {
   for (const auto& law : law_names()) {
     Scene scene = test::scene_of(law);
     scene.energy = true;
-    scene.damping.local = 0.2, scene.damping.normal_ratio = 0.05, scene.damping.shear_ratio = 0.05, scene.damping.mass = 10;
+    scene.damping.local = 0.2, scene.damping.normal_ratio = 0.05, scene.damping.shear_ratio = 0.05,
+    scene.damping.mass = 10;
     scene.specimen.count = 300, scene.specimen.grading.min_radius = 0.8e-3, scene.specimen.grading.max_radius = 1.2e-3;
     scene.specimen.grading.kind = Grading::Kind::uniform;
     scene.specimen.solid_fraction = 0.55;
@@ -131,7 +135,8 @@ TEST(Energy, LedgerClosesInACompression) {
     const double residual = energy_balance(scene, state, engine) - start;
     RecordProperty(law, std::to_string(residual / e.boundary));
     EXPECT_LT(std::abs(residual), 1e-6 * e.boundary) << law << " work " << e.boundary;
-    for (const double part : {e.friction, e.local_damping, e.viscous_damping}) EXPECT_GT(part, 1e-5 * e.boundary) << law;
+    for (const double part : {e.friction, e.local_damping, e.viscous_damping})
+      EXPECT_GT(part, 1e-5 * e.boundary) << law;
   }
 }
 
@@ -220,7 +225,8 @@ double bisected_limit(const Scene& scene, const State& start, double guess) {
     Random random(2);
     const double faint = 1e-9;  // m/s
     for (auto& v : state.grains.velocity)
-      v.x = faint * random.normal(), v.y = faint * random.normal(), v.z = scene.dimension == 3 ? faint * random.normal() : 0;
+      v.x = faint * random.normal(), v.y = faint * random.normal(),
+      v.z = scene.dimension == 3 ? faint * random.normal() : 0;
     Engine engine(scene, state);
     engine.kick(dt);
     const double before = engine.kick_sums().kinetic + 1e-300;
@@ -253,12 +259,14 @@ TEST_P(Stability, BisectedStepEqualsTwoOverOmega) {
     scene.materials = {test::linear_material(1e6, 1e6, 2650, 1e3)};
     const State start = test::state_of(scene);
     const double exact = (rotation ? c.with : c.without) * std::sqrt(1 / start.grains.velocity[0].w / 1e6);
-    EXPECT_NEAR(bisected_limit(scene, start, exact) / exact, 1.0, 2e-3) << c.lattice << (rotation ? " with" : " without") << " rotation";
+    EXPECT_NEAR(bisected_limit(scene, start, exact) / exact, 1.0, 2e-3)
+        << c.lattice << (rotation ? " with" : " without") << " rotation";
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Lattices, Stability,
-                         ::testing::Values(LatticeLimit{"fcc", {4, 4, 4}, .3162278, .5}, LatticeLimit{"bcc", {4, 4, 4}, .3872983, .5},
+                         ::testing::Values(LatticeLimit{"fcc", {4, 4, 4}, .3162278, .5},
+                                           LatticeLimit{"bcc", {4, 4, 4}, .3872983, .5},
                                            LatticeLimit{"sc", {4, 4, 4}, .4472136, .5773503},
                                            LatticeLimit{"hexagonal", {12, 6, 1}, .4082483, .6666667},
                                            LatticeLimit{"square", {6, 6, 1}, .5, .7071068}),

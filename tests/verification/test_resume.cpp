@@ -1,4 +1,5 @@
-// A run that was stopped, written, read and resumed equals the unbroken one bit for bit, whatever the number of threads.
+// A run that was stopped, written, read and resumed equals the unbroken one bit for bit, whatever the number of
+// threads.
 #include <gtest/gtest.h>
 #include <omp.h>
 
@@ -59,7 +60,8 @@ State go_on(const Scene& scene, State state, std::uint64_t until) {
   observer.step = [&](const State& s, const RunStatus&) { now = s.step; };
   observer.stop = [&] { return now >= until; };
   run_stages(scene, state, controller, observer);
-  const auto path = std::filesystem::temp_directory_path() / ("eigengrain_resume_" + std::to_string(::getpid()) + ".h5");
+  const auto path =
+      std::filesystem::temp_directory_path() / ("eigengrain_resume_" + std::to_string(::getpid()) + ".h5");
   write_snapshot(path.string(), scene, state);
   State back = read_snapshot(path.string()).state;
   std::filesystem::remove(path);
