@@ -64,8 +64,8 @@ Network linearise(const Scene& scene, const State& state, const OverlapGrowth& g
   visit_contacts(
       scene, state,
       [&](const ContactPoint& p) {
-        net.springs.push_back(
-            {p.i, p.j, p.geometry.arm_i, p.geometry.arm_j, p.normal.stiffness, p.normal.tangential, p.geometry.n});
+        net.springs.push_back({p.i, p.j, p.geometry.arm_i, p.geometry.arm_j, p.normal.stiffness, p.normal.tangential,
+                               p.geometry.n, norm(p.branch)});
       },
       growth);
   return net;

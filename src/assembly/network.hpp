@@ -14,6 +14,7 @@ struct Spring {
   double arm_i = 0, arm_j = 0;        ///< a [m]; arm_j = 0 for a wall
   double normal = 0, tangential = 0;  ///< kn, kt [N/m]
   Vec3 n;                             ///< unit, from i to j
+  double length = 0;  ///< of the branch [m]: distance of the centres; wall: of the centre from its plane
 };
 
 /// Masses enter as inverses: 0 is a grain that cannot move (or turn). Order of grains as in State::grains.

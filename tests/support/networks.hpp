@@ -60,7 +60,8 @@ inline Network lattice_network(const std::string& name, int cells, double kn, do
             const Vec3 branch = points.position[j] + image - points.position[i];
             const double d = norm(branch);
             if (std::abs(d - 1) > 1e-6) continue;
-            network.springs.push_back({static_cast<Index>(i), static_cast<Index>(j), .5, .5, kn, kt, (1 / d) * branch});
+            network.springs.push_back(
+                {static_cast<Index>(i), static_cast<Index>(j), .5, .5, kn, kt, (1 / d) * branch, d});
           }
   return network;
 }
@@ -101,7 +102,7 @@ inline Network random_network(const RandomNetworkOptions& o, std::uint64_t seed,
   const auto add = [&](std::size_t i, Index j, double arm_i, double arm_j, const Vec3& n) {
     const double kn = std::pow(10, random.uniform(-1, 1));
     const double ratio = o.tangential_ratio < 0 ? random.uniform() : o.tangential_ratio;
-    network.springs.push_back({static_cast<Index>(i), j, arm_i, arm_j, kn, ratio * kn, n});
+    network.springs.push_back({static_cast<Index>(i), j, arm_i, arm_j, kn, ratio * kn, n, arm_i + arm_j});
   };
   for (std::size_t i = 0; i < o.grains; ++i) {
     for (std::size_t j = i + 1; j < o.grains; ++j) {
