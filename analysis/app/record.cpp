@@ -3,22 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 
 #include "boundary/cell_control.hpp"
-#include "measure/homogenised.hpp"
 #include "measure/stress.hpp"
 #include "measure/tensor.hpp"
 
 namespace eg {
 namespace {
-
-/// Largest rate of strain of the cell [1/s].
-double strain_rate(const State& state) {
-  double most = 0;
-  for (const double r : state.cell.rate.a) most = std::max(most, std::abs(r));
-  return most;
-}
 
 /// A stage driven by stress alone may run fast: its end is told by equilibrium, or is the user's business.
 bool drives_strain(const StageSpec& stage) {
@@ -26,9 +20,94 @@ bool drives_strain(const StageSpec& stage) {
       stage.control, [](const ComponentControl& c) { return c.kind == ComponentControl::Kind::rate && c.value != 0; });
 }
 
-double inertia(const Scene& scene, const State& state, double d50) {
-  const double p = mean_stress(state), rate = strain_rate(state);
+double inertia(const Scene& scene, const State& state, const StageSpec& stage, double d50) {
+  const double p = mean_stress(state), rate = driving_rate(state, stage);
   return p > 0 && rate > 0 ? inertial_number(rate, d50, scene.materials.front().density, p) : 0.0;
+}
+
+/// All that the columns of a row are taken from.
+struct RowSource {
+  const Scene& scene;
+  const State& state;
+  const RunStatus& status;
+  const Homogenised& h;
+  std::array<double, 6> strain, stress;
+  EnergyTable energy;
+};
+
+/// A column of the history and where its value comes from: the one list of what a history holds.
+struct RowColumn {
+  HistoryColumn head;
+  std::function<double(const RowSource&)> value;
+};
+using Columns = std::vector<RowColumn>;
+
+void add_run_columns(Columns& c) {
+  c.push_back({{"stage", "-"}, [](const RowSource& r) { return static_cast<double>(r.state.stage + 1); }});
+  c.push_back({{"time", "s"}, [](const RowSource& r) { return r.state.time; }});
+  c.push_back({{"dt", "s"}, [](const RowSource& r) { return r.state.dt; }});
+  c.push_back({{"dt_certified", "s"}, [](const RowSource& r) { return r.state.policy.safe; }});
+}
+
+void add_stress_columns(Columns& c, int dimension, const std::string& pressure) {
+  constexpr std::array<const char*, 6> names{"x", "y", "z", "yz", "xz", "xy"};
+  const std::vector<std::size_t> axes =
+      dimension == 3 ? std::vector<std::size_t>{0, 1, 2, 3, 4, 5} : std::vector<std::size_t>{0, 1, 5};
+  for (const auto k : axes)
+    c.push_back({{std::string("strain_") + names[k], "-"}, [k](const RowSource& r) { return r.strain[k]; }});
+  for (const auto k : axes)
+    c.push_back({{std::string("stress_") + names[k], pressure}, [k](const RowSource& r) { return r.stress[k]; }});
+  c.push_back({{"mean_stress", pressure}, [](const RowSource& r) { return mean_stress(r.state); }});
+  c.push_back({{"deviator", pressure},
+               [](const RowSource& r) { return deviator(contact_stress(r.state), r.scene.dimension); }});
+}
+
+void add_fabric_columns(Columns& c, int dimension) {
+  for (std::size_t k = 0; k < static_cast<std::size_t>(dimension); ++k)
+    c.push_back(
+        {{fmt::format("fabric_{}", k + 1), "-"}, [k](const RowSource& r) { return r.h.fabric_axes.values[k]; }});
+  c.push_back(
+      {{"fabric_deviator", "-"}, [dimension](const RowSource& r) { return anisotropy(r.h.fabric_axes, dimension); }});
+  c.push_back({{"force_fabric_deviator", "-"},
+               [dimension](const RowSource& r) { return anisotropy(r.h.force_fabric_axes, dimension); }});
+}
+
+void add_network_columns(Columns& c, const std::string& joule) {
+  c.push_back({{"void_ratio", "-"}, [](const RowSource& r) { return r.h.void_ratio; }});
+  c.push_back({{"coordination", "-"}, [](const RowSource& r) { return r.h.coordination.mean; }});
+  c.push_back({{"mechanical_coordination", "-"}, [](const RowSource& r) { return r.h.coordination.mechanical; }});
+  c.push_back({{"rattler_share", "-"}, [](const RowSource& r) { return rattler_share(r.h.coordination); }});
+  c.push_back({{"sliding_fraction", "-"}, [](const RowSource& r) { return r.h.sliding_fraction; }});
+  c.push_back({{"mobilised_friction", "-"}, [](const RowSource& r) { return r.h.forces.mobilised_friction; }});
+  c.push_back({{"mean_contact_force", "N"}, [](const RowSource& r) { return r.h.forces.mean_force; }});
+  c.push_back({{"strong_contact_share", "-"}, [](const RowSource& r) { return r.h.forces.strong_contacts; }});
+  c.push_back({{"normal_deviator_share", "-"}, [](const RowSource& r) { return r.h.normal_share; }});
+  c.push_back({{"largest_overlap", "-"}, [](const RowSource& r) { return r.h.largest_overlap; }});
+  c.push_back({{"inertial_number", "-"},
+               [](const RowSource& r) { return inertia(r.scene, r.state, r.status.stage, r.h.sizes.d50); }});
+  c.push_back({{"unbalanced_force", "-"}, [](const RowSource& r) { return r.status.unbalanced; }});
+  c.push_back({{"kinetic_energy", joule}, [](const RowSource& r) { return r.status.kinetic; }});
+}
+
+void add_energy_columns(Columns& c, const std::string& joule) {
+  c.push_back({{"elastic_normal", joule}, [](const RowSource& r) { return r.energy.normal; }});
+  c.push_back({{"elastic_shear", joule}, [](const RowSource& r) { return r.energy.shear; }});
+  c.push_back({{"friction_work", joule}, [](const RowSource& r) { return r.energy.friction; }});
+  c.push_back({{"shear_path_work", joule}, [](const RowSource& r) { return r.energy.path; }});
+  c.push_back({{"damping_work", joule}, [](const RowSource& r) { return r.energy.damping; }});
+  c.push_back({{"outside_work", joule}, [](const RowSource& r) { return r.energy.work; }});
+  c.push_back({{"energy_residual", joule}, [](const RowSource& r) { return r.energy.residual; }});
+}
+
+Columns columns_of(const Scene& scene) {
+  const std::string joule = scene.dimension == 3 ? "J" : "J/m";
+  Columns c;
+  add_run_columns(c);
+  add_stress_columns(c, scene.dimension, scene.dimension == 3 ? "Pa" : "N/m");
+  add_network_columns(c, joule);
+  add_fabric_columns(c, scene.dimension);
+  if (scene.energy) add_energy_columns(c, joule);
+  return c;
 }
 
 }  // namespace
@@ -49,57 +128,32 @@ EnergyTable energies(const Scene& scene, const State& state, double kinetic) {
 }
 
 std::vector<HistoryColumn> history_columns(const Scene& scene) {
-  const std::string stress = scene.dimension == 3 ? "Pa" : "N/m", joule = scene.dimension == 3 ? "J" : "J/m";
-  std::vector<HistoryColumn> c{{"stage", "-"}, {"time", "s"}, {"dt", "s"}, {"dt_certified", "s"}};
-  const std::vector<std::string> axes = scene.dimension == 3 ? std::vector<std::string>{"x", "y", "z", "yz", "xz", "xy"}
-                                                             : std::vector<std::string>{"x", "y", "xy"};
-  for (const auto& a : axes) c.push_back({"strain_" + a, "-"});
-  for (const auto& a : axes) c.push_back({"stress_" + a, stress});
-  for (const auto& [name, unit] :
-       std::initializer_list<std::pair<const char*, std::string>>{{"mean_stress", stress},
-                                                                  {"deviator", stress},
-                                                                  {"void_ratio", "-"},
-                                                                  {"coordination", "-"},
-                                                                  {"mechanical_coordination", "-"},
-                                                                  {"sliding_fraction", "-"},
-                                                                  {"largest_overlap", "-"},
-                                                                  {"inertial_number", "-"},
-                                                                  {"unbalanced_force", "-"},
-                                                                  {"kinetic_energy", joule}})
-    c.push_back({name, unit});
-  if (scene.energy)
-    for (const char* name : {"elastic_normal", "elastic_shear", "friction_work", "shear_path_work", "damping_work",
-                             "outside_work", "energy_residual"})
-      c.push_back({name, joule});
-  return c;
+  std::vector<HistoryColumn> heads;
+  for (const auto& column : columns_of(scene)) heads.push_back(column.head);
+  return heads;
 }
 
-std::vector<double> history_row(const Scene& scene, const State& state, const RunStatus& status) {
-  const Homogenised h = homogenise(scene, state);
-  const auto strain = stage_strain(state), stress = stress_components(state);
-  std::vector<double> row{static_cast<double>(state.stage + 1), state.time, state.dt, state.policy.safe};
-  const std::vector<std::size_t> axes =
-      scene.dimension == 3 ? std::vector<std::size_t>{0, 1, 2, 3, 4, 5} : std::vector<std::size_t>{0, 1, 5};
-  for (const auto k : axes) row.push_back(strain[k]);
-  for (const auto k : axes) row.push_back(stress[k]);
-  row.insert(row.end(), {mean_stress(state), deviator(contact_stress(state), scene.dimension), h.void_ratio,
-                         h.coordination.mean, h.coordination.mechanical, h.sliding_fraction, h.largest_overlap,
-                         inertia(scene, state, h.sizes.d50), status.unbalanced, status.kinetic});
-  if (scene.energy) {
-    const EnergyTable e = energies(scene, state, status.kinetic);
-    row.insert(row.end(), {e.normal, e.shear, e.friction, e.path, e.damping, e.work, e.residual});
-  }
+std::vector<double> history_row(const Scene& scene, const State& state, const RunStatus& status, const Homogenised& h) {
+  const RowSource source{scene,
+                         state,
+                         status,
+                         h,
+                         stage_strain(state),
+                         stress_components(state),
+                         scene.energy ? energies(scene, state, status.kinetic) : EnergyTable{}};
+  std::vector<double> row;
+  for (const auto& column : columns_of(scene)) row.push_back(column.value(source));
   return row;
 }
 
-std::vector<std::string> broken_assumptions(const Scene& scene, const State& state, const RunStatus& status) {
+std::vector<std::string> broken_assumptions(const Scene& scene, const State& state, const RunStatus& status,
+                                            const Homogenised& h) {
   std::vector<std::string> out;
-  const Homogenised h = homogenise(scene, state);
   if (h.largest_overlap > 0.05)
     out.push_back(fmt::format(
         "largest overlap {:.2f} % of the smaller diameter (limit 5 %): contacts are too soft for this stress",
         100 * h.largest_overlap));
-  const double i = inertia(scene, state, h.sizes.d50);
+  const double i = inertia(scene, state, status.stage, h.sizes.d50);
   if (i > 2.5e-3 && drives_strain(status.stage))
     out.push_back(fmt::format("inertial number {:.2e} (limit 2.5e-3): not quasi-static", i));
   if (state.policy.safe > 0 && state.dt > state.policy.safe * (1 + 1e-12))

@@ -61,8 +61,9 @@ class Recorder {
                          : History::create((folder_ / "history.csv").string(), history_columns(scene))) {}
 
   void row(const State& state, const RunStatus& status) {
-    history_.append(state.step, history_row(scene_, state, status));
-    for (auto& line : broken_assumptions(scene_, state, status)) {
+    const Homogenised h = homogenise(scene_, state);
+    history_.append(state.step, history_row(scene_, state, status, h));
+    for (auto& line : broken_assumptions(scene_, state, status, h)) {
       const std::string kind = line.substr(0, line.find(' '));  // one line a kind of trouble, the first one seen
       if (seen_.contains(kind)) continue;
       fmt::print(stderr, "warning: step {}: {}\n", state.step, line);

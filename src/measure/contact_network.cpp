@@ -50,6 +50,10 @@ Coordination coordination(std::size_t grains, std::span<const ContactPoint> cont
   return result;
 }
 
+double rattler_share(const Coordination& c) {
+  return c.grains > 0 ? static_cast<double>(c.isolated + c.dangling) / static_cast<double>(c.grains) : 0;
+}
+
 std::vector<bool> find_rattlers(std::size_t grains, std::span<const ContactPoint> contacts, int minimum) {
   std::vector<std::vector<Index>> touching(grains);
   for (const auto& c : contacts) {
@@ -87,18 +91,6 @@ Coordination backbone(std::size_t grains, std::span<const ContactPoint> contacts
   Coordination result = count_ends(kept);
   count_contacts(result, bearing);
   return result;
-}
-
-Mat3 fabric_tensor(std::span<const ContactPoint> contacts) {
-  Mat3 sum;
-  std::size_t count = 0;
-  for (const auto& c : contacts) {
-    if (c.j == no_index) continue;
-    sum += outer(c.geometry.n, c.geometry.n);
-    ++count;
-  }
-  if (count > 0) sum *= 1 / static_cast<double>(count);
-  return sum;
 }
 
 double sliding_fraction(std::span<const ContactPoint> contacts) {

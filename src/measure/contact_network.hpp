@@ -1,5 +1,5 @@
 #pragma once
-// Who touches whom: coordination, rattlers, fabric. A grain contact has two ends, a wall contact one.
+// Who touches whom: coordination, rattlers. A grain contact has two ends, a wall contact one.
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -21,6 +21,8 @@ struct Coordination {
   double mean = 0;           ///< Z = 2 Nc/N (a wall contact counts once)
   double mechanical = 0;     ///< Z_m = (2 Nc − N1)/(N − N0 − N1) (Thornton 2000): mean over grains with 2 or more
 };
+/// Share of grains with one contact or none: those that Z_m leaves out [-].
+double rattler_share(const Coordination&);
 Coordination coordination(std::size_t grains, std::span<const ContactPoint>);
 
 /// Grains that carry nothing: those with fewer than `minimum` contacts, taken out again and again until none is left.
@@ -29,9 +31,6 @@ std::vector<bool> find_rattlers(std::size_t grains, std::span<const ContactPoint
 
 /// What remains without rattlers: contacts between the others, 2 Nc/N over them.
 Coordination backbone(std::size_t grains, std::span<const ContactPoint>, int minimum);
-
-/// Fabric tensor Φ = (1/Nc) Σ n⊗n over contacts of two grains (Satake 1982); zero without contacts.
-Mat3 fabric_tensor(std::span<const ContactPoint>);
 
 /// Contacts that slide over all contacts; 0 without contacts.
 double sliding_fraction(std::span<const ContactPoint>);

@@ -1,5 +1,7 @@
 #include "measure/stress.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace eg {
@@ -51,6 +53,17 @@ double elastic_energy(std::span<const ContactPoint> contacts) {
     if (c.normal.tangential > 0) sum += dot(c.shear, c.shear) / (2 * c.normal.tangential);
   }
   return sum;
+}
+
+double driving_rate(const State& state, const StageSpec& stage) {
+  constexpr std::array<std::array<int, 2>, 6> places{{{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}}};
+  double driven = 0, any = 0;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const double rate = std::abs(state.cell.rate(places[k][0], places[k][1]));
+    any = std::max(any, rate);
+    if (stage.control[k].kind == ComponentControl::Kind::rate) driven = std::max(driven, rate);
+  }
+  return driven > 0 ? driven : any;
 }
 
 double inertial_number(double strain_rate, double diameter, double density, double mean_stress) {

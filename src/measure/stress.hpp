@@ -24,6 +24,11 @@ double kinetic_energy(const State&);
 /// law only: an incremental law whose kt changes with N has no potential (Elata and Berryman 1996).
 double elastic_energy(std::span<const ContactPoint>);
 
+/// The rate that inertia is judged by [1/s]: the largest |rate| among the components of the cell that the stage drives
+/// at a rate, so that what answers in the test (the lateral strain under constant p, say) does not count (Lopera Perez
+/// et al. 2016); of all components when the stage drives none so. Axial and engineering shear rates alike.
+double driving_rate(const State&, const StageSpec&);
+
 /// I = ε̇ d √(ρ/p), ε̇ [1/s], d [m], ρ of the grains [kg/m³], p > 0 [Pa] (GDR MiDi 2004). Quasi-static below some 1e-3.
 double inertial_number(double strain_rate, double diameter, double density, double mean_stress);
 
