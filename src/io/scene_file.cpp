@@ -148,7 +148,7 @@ Grading read_grading(const TomlReader& specimen) {
 }
 
 void read_lattice(const TomlReader& t, int dimension, SpecimenSpec& s) {
-  const std::vector<std::string> plane{"square", "hexagonal"}, space{"sc", "bcc", "fcc", "hcp"};
+  const std::vector<std::string> plane{"square", "hexagonal"}, space{"sc", "bcc", "fcc", "fcc-110", "fcc-111", "hcp"};
   t.text("lattice", s.lattice, required);
   const auto& other = dimension == 2 ? space : plane;
   if (std::ranges::find(other, s.lattice) != other.end())

@@ -6,9 +6,11 @@
 //   sc         1, 1, 1                  1       6    π/6
 //   bcc        2/√3, 2/√3, 2/√3         2       8    π√3/8
 //   fcc        √2, √2, √2               4       12   π/(3√2)
-//   hcp        1, √3, 2√(2/3)           4       12   π/(3√2)    close-packed layers horizontal, rows along x
-//   square     1, 1                     1       4    π/4
-//   hexagonal  1, √3                    2       6    π/(2√3)    rows along x
+//   fcc-110    1, 1, √2                 2       12   π/(3√2)    fcc turned: rows along x and y, square layers
+//   horizontal fcc-111    1, √3, √6                6       12   π/(3√2)    fcc turned: close-packed layers horizontal,
+//   rows along x hcp        1, √3, 2√(2/3)           4       12   π/(3√2)    close-packed layers horizontal, rows along
+//   x square     1, 1                     1       4    π/4 hexagonal  1, √3                    2       6    π/(2√3)
+//   rows along x
 #include <array>
 #include <functional>
 #include <optional>

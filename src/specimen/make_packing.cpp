@@ -58,7 +58,7 @@ Packing lattice_packing(const Scene& scene, Random& random) {
   if (!cell || cell->dimension != scene.dimension)
     throw input_error(scene.file, 0, fmt::format("specimen.lattice = \"{}\"", spec.lattice),
                       fmt::format("is not a lattice in {} dimensions", scene.dimension),
-                      scene.dimension == 3 ? "take sc, bcc, fcc or hcp" : "take square or hexagonal");
+                      scene.dimension == 3 ? "take sc, bcc, fcc, fcc-110, fcc-111 or hcp" : "take square or hexagonal");
   return make_lattice(*cell,
                       {.cells = spec.cells,
                        .radius = spec.radius,

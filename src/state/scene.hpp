@@ -32,7 +32,7 @@ struct SpecimenSpec {
   enum class Source { lattice, cloud, file };
   Source source = Source::cloud;
   // lattice
-  std::string lattice;                ///< "sc", "bcc", "fcc", "hcp", "square", "hexagonal"
+  std::string lattice;                ///< a name of specimen/lattice.hpp: "fcc", "hexagonal"
   std::array<int, 3> cells{4, 4, 4};  ///< conventional (rectangular) unit cells along x, y, z
   double radius = not_given;          ///< [m]
   double overlap = 0;                 ///< δ/d of touching neighbours, d = 2R [-]

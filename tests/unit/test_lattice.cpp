@@ -19,6 +19,8 @@ struct Expected {
 const Expected table[] = {{"sc", 6, pi / 6},
                           {"bcc", 8, pi* std::sqrt(3.0) / 8},
                           {"fcc", 12, pi / (3 * std::sqrt(2.0))},
+                          {"fcc-110", 12, pi / (3 * std::sqrt(2.0))},
+                          {"fcc-111", 12, pi / (3 * std::sqrt(2.0))},
                           {"hcp", 12, pi / (3 * std::sqrt(2.0))},
                           {"square", 4, pi / 4},
                           {"hexagonal", 6, pi / (2 * std::sqrt(3.0))}};
