@@ -66,6 +66,7 @@ void control_cell(State& state, const StageSpec& stage, double dt) {
   std::array<double, 6> rate{};
   for (std::size_t k = 0; k < 6; ++k) {
     const auto& c = stage.control[k];
+    if (k < 3 && stage.mean_axes[k]) continue;  // below; they have one integral together
     rate[k] = c.kind == ComponentControl::Kind::rate
                   ? c.value
                   : answer(c.value - stress[k], servo, state.servo[k], stage.max_strain_rate, dt);
