@@ -1,0 +1,100 @@
+#include "measure/measure_sphere.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include "measure/contact_network.hpp"
+#include "measure/volume.hpp"
+
+namespace eg {
+
+namespace {
+
+/// Calls visit with every translation by whole edges of the cell that brings a point within `reach` of the centre
+/// (and perhaps a few that do not).
+void visit_images(const Cell& cell, const Vec3& point, const Vec3& centre, double reach,
+                  const std::function<void(const Vec3& shift)>& visit) {
+  std::array<int, 3> low{}, high{};
+  const Vec3 away = inverse(cell.h) * (centre - point);  // in edges
+  for (int k = 0; k < 3; ++k) {
+    const auto place = static_cast<std::size_t>(k);
+    if (!cell.periodic[place]) continue;
+    const double edges = reach / cell.width(k);
+    low[place] = static_cast<int>(std::ceil(away[k] - edges)),
+    high[place] = static_cast<int>(std::floor(away[k] + edges));
+  }
+  for (int a = low[0]; a <= high[0]; ++a)
+    for (int b = low[1]; b <= high[1]; ++b)
+      for (int c = low[2]; c <= high[2]; ++c) visit(cell.h * Vec3{double(a), double(b), double(c)});
+}
+
+/// A grain, or an image of one, with its centre inside.
+struct Inside {
+  Vec3 position, velocity;
+};
+
+/// Σ (v − v̄)⊗(x − x̄) (Σ (x − x̄)⊗(x − x̄))⁻¹.
+std::optional<Mat3> fit_gradient(std::span<const Inside> grains, int dimension) {
+  if (grains.size() <= static_cast<std::size_t>(dimension)) return std::nullopt;
+  Vec3 x_mean, v_mean;
+  for (const auto& g : grains) x_mean += g.position, v_mean += g.velocity;
+  x_mean *= 1 / static_cast<double>(grains.size()), v_mean *= 1 / static_cast<double>(grains.size());
+  Mat3 spread, product;
+  for (const auto& g : grains) {
+    spread += outer(g.position - x_mean, g.position - x_mean);
+    product += outer(g.velocity - v_mean, g.position - x_mean);
+  }
+  if (dimension == 2) spread(2, 2) = (spread(0, 0) + spread(1, 1)) / 2;  // any number of the same size: L·z stays 0
+  const double size = trace(spread) / 3;
+  if (!(determinant(spread) > 1e-12 * size * size * size)) return std::nullopt;
+  return product * inverse(spread);
+}
+
+}  // namespace
+
+double share_inside(const Vec3& a, const Vec3& b, const MeasureSphere& sphere) {
+  const Vec3 along = b - a, from = a - sphere.centre;
+  const double length2 = dot(along, along), half = -dot(along, from);
+  const double root2 = half * half - length2 * (dot(from, from) - sphere.radius * sphere.radius);
+  if (!(root2 > 0) || !(length2 > 0)) return 0;
+  const double root = std::sqrt(root2);
+  return std::max(0.0, std::min(1.0, (half + root) / length2) - std::max(0.0, (half - root) / length2));
+}
+
+SphereMeasures measure_sphere(const State& state, std::span<const ContactPoint> contacts, const MeasureSphere& sphere) {
+  const int dimension = state.dimension;
+  const auto& grains = state.grains;
+  const auto ends = contacts_per_grain(grains.size(), contacts);
+  SphereMeasures result;
+  result.volume = grain_volume(dimension, sphere.radius);
+  std::vector<Inside> inside;
+  double solid = 0, touching = 0;
+  for (std::size_t i = 0; i < grains.size(); ++i) {
+    const Vec3 x = grains.position[i].vec();
+    visit_images(state.cell, x, sphere.centre, sphere.radius + grains.radius(i), [&](const Vec3& shift) {
+      const Vec3 image = x + shift;
+      const double distance = norm(image - sphere.centre);
+      solid += lens_volume(dimension, sphere.radius, grains.radius(i), distance);
+      if (distance > sphere.radius) return;
+      inside.push_back({image, grains.velocity[i].vec() + state.cell.rate * image});
+      touching += ends[i];
+    });
+  }
+  result.solid_fraction = solid / result.volume;
+  result.void_ratio = void_ratio(result.volume, solid);
+  result.grains = inside.size();
+  if (!inside.empty()) result.coordination = touching / static_cast<double>(inside.size());
+  result.velocity_gradient = fit_gradient(inside, dimension);
+  for (const auto& c : contacts) {
+    const Vec3 from = grains.position[c.i].vec();
+    double share = 0;
+    visit_images(state.cell, from, sphere.centre, sphere.radius + norm(c.branch),
+                 [&](const Vec3& shift) { share += share_inside(from + shift, from + shift + c.branch, sphere); });
+    if (share > 0) result.stress += (share / result.volume) * outer(c.force(), c.branch);
+  }
+  return result;
+}
+
+}  // namespace eg
