@@ -20,16 +20,10 @@ bool drives_strain(const StageSpec& stage) {
       stage.control, [](const ComponentControl& c) { return c.kind == ComponentControl::Kind::rate && c.value != 0; });
 }
 
-double inertia(const Scene& scene, const State& state, const StageSpec& stage, double d50) {
-  const double p = mean_stress(state), rate = driving_rate(state, stage);
-  return p > 0 && rate > 0 ? inertial_number(rate, d50, scene.materials.front().density, p) : 0.0;
-}
-
 /// All that the columns of a row are taken from.
 struct RowSource {
   const Scene& scene;
   const State& state;
-  const RunStatus& status;
   const Homogenised& h;
   std::array<double, 6> strain, stress;
   EnergyTable energy;
@@ -83,10 +77,9 @@ void add_network_columns(Columns& c, const std::string& joule) {
   c.push_back({{"strong_contact_share", "-"}, [](const RowSource& r) { return r.h.forces.strong_contacts; }});
   c.push_back({{"normal_deviator_share", "-"}, [](const RowSource& r) { return r.h.normal_share; }});
   c.push_back({{"largest_overlap", "-"}, [](const RowSource& r) { return r.h.largest_overlap; }});
-  c.push_back({{"inertial_number", "-"},
-               [](const RowSource& r) { return inertia(r.scene, r.state, r.status.stage, r.h.sizes.d50); }});
-  c.push_back({{"unbalanced_force", "-"}, [](const RowSource& r) { return r.status.unbalanced; }});
-  c.push_back({{"kinetic_energy", joule}, [](const RowSource& r) { return r.status.kinetic; }});
+  c.push_back({{"inertial_number", "-"}, [](const RowSource& r) { return inertial_number_of(r.scene, r.state, r.h); }});
+  c.push_back({{"unbalanced_force", "-"}, [](const RowSource& r) { return r.state.unbalanced; }});
+  c.push_back({{"kinetic_energy", joule}, [](const RowSource& r) { return r.state.kinetic; }});
 }
 
 void add_energy_columns(Columns& c, const std::string& joule) {
@@ -112,14 +105,24 @@ Columns columns_of(const Scene& scene) {
 
 }  // namespace
 
-EnergyTable energies(const Scene& scene, const State& state, double kinetic) {
+const StageSpec& current_stage(const Scene& scene, const State& state) {
+  static const StageSpec none;
+  return scene.stages.empty() ? none : scene.stages[std::min(state.stage, scene.stages.size() - 1)];
+}
+
+double inertial_number_of(const Scene& scene, const State& state, const Homogenised& h) {
+  const double p = mean_stress(state), rate = driving_rate(state, current_stage(scene, state));
+  return p > 0 && rate > 0 ? inertial_number(rate, h.sizes.d50, scene.materials.front().density, p) : 0.0;
+}
+
+EnergyTable energies(const Scene& scene, const State& state) {
   EnergyTable t;
   visit_contacts(scene, state, [&](const ContactPoint& p) {
     t.normal += p.normal_energy;
     if (p.normal.tangential > 0) t.shear += 0.5 * dot(p.shear, p.shear) / p.normal.tangential;
   });
   const auto& e = state.ledger;
-  t.kinetic = kinetic, t.friction = e.friction;
+  t.kinetic = state.kinetic, t.friction = e.friction;
   t.path = e.shear_work - e.friction - t.shear;
   t.damping = e.local_damping + e.mass_damping + e.viscous_damping;
   t.work = e.boundary + e.body;
@@ -133,34 +136,32 @@ std::vector<HistoryColumn> history_columns(const Scene& scene) {
   return heads;
 }
 
-std::vector<double> history_row(const Scene& scene, const State& state, const RunStatus& status, const Homogenised& h) {
+std::vector<double> history_row(const Scene& scene, const State& state, const Homogenised& h) {
   const RowSource source{scene,
                          state,
-                         status,
                          h,
                          stage_strain(state),
                          stress_components(state),
-                         scene.energy ? energies(scene, state, status.kinetic) : EnergyTable{}};
+                         scene.energy ? energies(scene, state) : EnergyTable{}};
   std::vector<double> row;
   for (const auto& column : columns_of(scene)) row.push_back(column.value(source));
   return row;
 }
 
-std::vector<std::string> broken_assumptions(const Scene& scene, const State& state, const RunStatus& status,
-                                            const Homogenised& h) {
+std::vector<std::string> broken_assumptions(const Scene& scene, const State& state, const Homogenised& h) {
   std::vector<std::string> out;
   if (h.largest_overlap > 0.05)
     out.push_back(fmt::format(
         "largest overlap {:.2f} % of the smaller diameter (limit 5 %): contacts are too soft for this stress",
         100 * h.largest_overlap));
-  const double i = inertia(scene, state, status.stage, h.sizes.d50);
-  if (i > 2.5e-3 && drives_strain(status.stage))
+  const double i = inertial_number_of(scene, state, h);
+  if (i > 2.5e-3 && drives_strain(current_stage(scene, state)))
     out.push_back(fmt::format("inertial number {:.2e} (limit 2.5e-3): not quasi-static", i));
   if (state.policy.safe > 0 && state.dt > state.policy.safe * (1 + 1e-12))
     out.push_back(fmt::format("time step {:.4g} s is {:.2f} times the certified limit {:.4g} s: it may be unstable",
                               state.dt, state.dt / state.policy.safe, state.policy.safe));
   if (scene.energy && scene.specimen.source == SpecimenSpec::Source::cloud) {  // others may begin with stored energy
-    const EnergyTable e = energies(scene, state, status.kinetic);
+    const EnergyTable e = energies(scene, state);
     if (std::abs(e.residual) > 0.01 * std::abs(e.work))
       out.push_back(fmt::format("energy drift {:.2e} J is {:.1f} % of the work done (limit 1 %)", e.residual,
                                 100 * std::abs(e.residual / e.work)));

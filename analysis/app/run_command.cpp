@@ -60,10 +60,10 @@ class Recorder {
         history_(resumed ? History::resume((folder_ / "history.csv").string(), history_columns(scene), state.step)
                          : History::create((folder_ / "history.csv").string(), history_columns(scene))) {}
 
-  void row(const State& state, const RunStatus& status) {
+  void row(const State& state) {
     const Homogenised h = homogenise(scene_, state);
-    history_.append(state.step, history_row(scene_, state, status, h));
-    for (auto& line : broken_assumptions(scene_, state, status, h)) {
+    history_.append(state.step, history_row(scene_, state, h));
+    for (auto& line : broken_assumptions(scene_, state, h)) {
       const std::string kind = line.substr(0, line.find(' '));  // one line a kind of trouble, the first one seen
       if (seen_.contains(kind)) continue;
       fmt::print(stderr, "warning: step {}: {}\n", state.step, line);
@@ -169,7 +169,7 @@ int run_command(const RunFlags& flags) {
   observer.step = [&](const State& s, const RunStatus& status) {
     progress.update(static_cast<double>(s.step), run_share(scene, s), [&] { return run_note(scene, s, status); });
   };
-  observer.record = [&](const State& s, const RunStatus& status) { recorder.row(s, status); };
+  observer.record = [&](const State& s, const RunStatus&) { recorder.row(s); };
   observer.snapshot = [&](const State& s) { recorder.snapshot(s, fmt::format("step_{:09d}", s.step)); };
   observer.stage_end = [&](const State& s, const StageSpec& stage) {
     progress.clear();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/text_file.hpp"
+#include "measure/force_network.hpp"
 
 namespace eg {
 
@@ -38,6 +39,16 @@ class Appended {
 
 void push(std::vector<double>& all, const Vec3& v) { all.insert(all.end(), {v.x, v.y, v.z}); }
 
+constexpr const char* head =
+    "<?xml version=\"1.0\"?>\n"
+    "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n";
+
+/// The XML of a piece, and the appended section behind it.
+void write_piece(const std::string& path, const std::string& piece, const Appended& data) {
+  write_file(path, head + piece + "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_" + data.bytes() +
+                       "\n</AppendedData>\n</VTKFile>\n");
+}
+
 }  // namespace
 
 void write_vtp(const std::string& path, const State& state) {
@@ -55,16 +66,41 @@ void write_vtp(const std::string& path, const State& state) {
   }
   Appended data;
   std::string xml =
-      "<?xml version=\"1.0\"?>\n"
-      "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n";
-  xml += fmt::format("<Piece NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\">\n<PointData Scalars=\"radius\">\n", n);
+      fmt::format("<Piece NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\">\n<PointData Scalars=\"radius\">\n", n);
   xml += data.array("Float64", "radius", 1, radius);
   xml += data.array("Float64", "velocity", 3, velocity);
   xml += data.array("UInt32", "id", 1, grains.id);
   xml += "</PointData>\n<Points>\n" + data.array("Float64", "position", 3, point) + "</Points>\n<Verts>\n";
   xml += data.array("Int64", "connectivity", 1, connectivity) + data.array("Int64", "offsets", 1, offset);
-  xml += "</Verts>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";
-  write_file(path, xml + data.bytes() + "\n</AppendedData>\n</VTKFile>\n");
+  write_piece(path, xml + "</Verts>\n", data);
+}
+
+void write_network_vtp(const std::string& path, const State& state, std::span<const ContactPoint> contacts,
+                       const ForceChains& chains) {
+  double mean = 0;
+  for (const auto& c : contacts) mean += c.normal.force / static_cast<double>(contacts.size());
+  std::vector<double> point, force, normal, shear;
+  std::vector<std::int32_t> strong, sliding;
+  std::vector<std::int64_t> connectivity, offset;
+  for (const auto& c : contacts) {
+    const Vec3 x = state.grains.position[c.i].vec();
+    push(point, x), push(point, x + c.branch);
+    for (int end = 0; end < 2; ++end) connectivity.push_back(static_cast<std::int64_t>(connectivity.size()));
+    offset.push_back(static_cast<std::int64_t>(connectivity.size()));
+    push(force, c.force());
+    normal.push_back(c.normal.force), shear.push_back(norm(c.shear));
+    strong.push_back(is_strong(c, mean)), sliding.push_back(c.sliding());
+  }
+  Appended data;
+  std::string xml = fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfLines=\"{}\">\n<Points>\n", 2 * contacts.size(),
+                                contacts.size());
+  xml += data.array("Float64", "position", 3, point) + "</Points>\n<Lines>\n";
+  xml += data.array("Int64", "connectivity", 1, connectivity) + data.array("Int64", "offsets", 1, offset);
+  xml += "</Lines>\n<CellData Scalars=\"normal_force\">\n";
+  xml += data.array("Float64", "normal_force", 1, normal) + data.array("Float64", "shear_force", 1, shear);
+  xml += data.array("Float64", "force", 3, force) + data.array("Int32", "strong", 1, strong);
+  xml += data.array("Int32", "sliding", 1, sliding) + data.array("Int32", "chain", 1, chains.link);
+  write_piece(path, xml + "</CellData>\n", data);
 }
 
 }  // namespace eg

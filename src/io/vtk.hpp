@@ -1,7 +1,9 @@
 #pragma once
 // ParaView output.
+#include <span>
 #include <string>
 
+#include "measure/force_chains.hpp"
 #include "state/state.hpp"
 
 namespace eg {
@@ -9,5 +11,11 @@ namespace eg {
 /// Writes the grains as points of a .vtp file (VTK XML PolyData, raw appended data) with arrays radius [m],
 /// velocity [m/s] (the true one, v = c + L·x) and id. Throws RunError when the file cannot be written.
 void write_vtp(const std::string& path, const State&);
+
+/// Writes the contacts as lines between the centres of two grains (across a periodic face: to the image; at a wall: to
+/// its plane) of a .vtp file, with arrays normal_force, shear_force [N], force (on the second grain) [N], strong (above
+/// the mean), sliding (0 or 1) and chain (number of the force chain, −1: none). Throws RunError when the file cannot be
+/// written.
+void write_network_vtp(const std::string& path, const State&, std::span<const ContactPoint>, const ForceChains&);
 
 }  // namespace eg

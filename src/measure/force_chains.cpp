@@ -83,9 +83,15 @@ ForceChains force_chains(const State& state, std::span<const ContactPoint> conta
   const auto hands_on = [&](Index grain, const Vec3& n) {
     return major[grain].value > mean && std::abs(dot(major[grain].axis, n)) >= along;
   };
-  for (const auto& c : contacts)
-    if (c.j != no_index && hands_on(c.i, c.geometry.n) && hands_on(c.j, c.geometry.n)) sets.join(c.i, c.j);
-  return chains_of(sets, grains);
+  std::vector<bool> joins;
+  for (const auto& c : contacts) {
+    joins.push_back(c.j != no_index && hands_on(c.i, c.geometry.n) && hands_on(c.j, c.geometry.n));
+    if (joins.back()) sets.join(c.i, c.j);
+  }
+  ForceChains result = chains_of(sets, grains);
+  for (std::size_t k = 0; k < contacts.size(); ++k)
+    result.link.push_back(joins[k] ? result.chain[contacts[k].i] : ForceChains::none);
+  return result;
 }
 
 }  // namespace eg

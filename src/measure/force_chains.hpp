@@ -10,6 +10,7 @@ namespace eg {
 struct ForceChains {
   static constexpr int none = -1;
   std::vector<int> chain;   ///< number of the chain of every grain, from 0, the longest first; `none`
+  std::vector<int> link;    ///< number of the chain that a contact holds together, in their order; `none`
   std::vector<int> length;  ///< grains of every chain
   double grain_share = 0;   ///< grains in chains over all grains [-]
   double mean_length = 0;   ///< grains a chain

@@ -75,7 +75,7 @@ std::vector<std::vector<double>> stress_by_pair(const State& state, std::span<co
     if (c.j == no_index) continue;
     const double part = dot(c.force(), c.branch);
     const auto [a, b] =
-        std::minmax(fraction_of(diameter(state, c.i), splits), fraction_of(diameter(state, c.j), splits));
+        std::minmax({fraction_of(diameter(state, c.i), splits), fraction_of(diameter(state, c.j), splits)});
     share[a][b] += part;
     whole += part;
   }

@@ -261,6 +261,7 @@ TEST(ForceChains, AColumnUnderLoadIsOneChain) {
   const auto chains = force_chains(state, contacts);
   ASSERT_EQ(chains.length, std::vector{4});
   EXPECT_EQ(chains.chain, (std::vector{0, 0, 0, 0, ForceChains::none, ForceChains::none}));
+  EXPECT_EQ(chains.link, (std::vector{0, 0, 0, ForceChains::none, ForceChains::none}));
   EXPECT_DOUBLE_EQ(chains.grain_share, 4. / 6);
   EXPECT_EQ(chains.mean_length, 4);
   EXPECT_TRUE(force_chains(state, {}).length.empty());

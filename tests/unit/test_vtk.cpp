@@ -42,4 +42,28 @@ TEST(Vtk, GrainsWithTrueVelocities) {
   EXPECT_EQ(values<std::int64_t>(file, "offsets"), (std::vector<std::int64_t>{1, 2}));
 }
 
+TEST(Vtk, ContactsAsLinesWithTheirForces) {
+  eg::State state;
+  state.grains.position = {{0, 0, 0, 1}, {0, 0, 2, 1}, {9, 0, 0, 1}};
+  eg::ContactPoint a, b;
+  a.i = 0, a.j = 1, a.branch = {0, 0, 2}, a.geometry.n = {0, 0, 1}, a.normal.force = 3, a.shear = {1, 0, 0};
+  b.i = 2, b.j = 0, b.branch = {1, 0, 0}, b.geometry.n = {1, 0, 0}, b.normal.force = 1, b.limit = 1;  // to an image
+  a.limit = 1;
+  eg::ForceChains chains;
+  chains.link = {0, eg::ForceChains::none};
+  const Scratch scratch;
+  const std::string path = scratch / "contacts.vtp";
+  eg::write_network_vtp(path, state, std::vector{a, b}, chains);
+  const std::string file = eg::read_file(path);
+  EXPECT_NE(file.find("NumberOfPoints=\"4\" NumberOfLines=\"2\""), std::string::npos);
+  EXPECT_EQ(values<double>(file, "position"), (std::vector<double>{0, 0, 0, 0, 0, 2, 9, 0, 0, 10, 0, 0}));
+  EXPECT_EQ(values<std::int64_t>(file, "connectivity"), (std::vector<std::int64_t>{0, 1, 2, 3}));
+  EXPECT_EQ(values<std::int64_t>(file, "offsets"), (std::vector<std::int64_t>{2, 4}));
+  EXPECT_EQ(values<double>(file, "normal_force"), (std::vector<double>{3, 1}));
+  EXPECT_EQ(values<double>(file, "force"), (std::vector<double>{-1, 0, 3, 1, 0, 0}));
+  EXPECT_EQ(values<std::int32_t>(file, "strong"), (std::vector<std::int32_t>{1, 0}));
+  EXPECT_EQ(values<std::int32_t>(file, "sliding"), (std::vector<std::int32_t>{1, 0}));
+  EXPECT_EQ(values<std::int32_t>(file, "chain"), (std::vector<std::int32_t>{0, -1}));
+}
+
 }  // namespace
