@@ -256,12 +256,14 @@ TEST(GrainStress, CoarseAndFines) {
 TEST(ForceChains, AColumnUnderLoadIsOneChain) {
   // four grains in a column, two to the side that carry little
   const State state = sized({1, 1, 1, 1, 1, 1});
-  const std::vector contacts{contact(0, 1, {0, 0, 2}, 9), contact(1, 2, {0, 0, 2}, 9), contact(2, 3, {0, 0, 2}, 9),
-                             contact(1, 4, {2, 0, 0}, 1), contact(4, 5, {2, 0, 0}, 1)};
+  const std::vector contacts{contact(0, 1, {0, 0, 2}, 9),       contact(1, 2, {0, 0, 2}, 9),
+                             contact(2, 3, {0, 0, 2}, 9),       contact(1, 4, {2, 0, 0}, 1),
+                             contact(4, 5, {2, 0, 0}, 1),       contact(0, no_index, {0, 0, -1}, 9),
+                             contact(3, no_index, {0, 0, 1}, 9)};
   const auto chains = force_chains(state, contacts);
   ASSERT_EQ(chains.length, std::vector{4});
-  EXPECT_EQ(chains.chain, (std::vector{0, 0, 0, 0, ForceChains::none, ForceChains::none}));
-  EXPECT_EQ(chains.link, (std::vector{0, 0, 0, ForceChains::none, ForceChains::none}));
+  EXPECT_EQ(chains.chain, (std::vector{0, 0, 0, 0, -1, -1}));
+  EXPECT_EQ(chains.link, (std::vector{0, 0, 0, -1, -1, -1, -1}));
   EXPECT_DOUBLE_EQ(chains.grain_share, 4. / 6);
   EXPECT_EQ(chains.mean_length, 4);
   EXPECT_TRUE(force_chains(state, {}).length.empty());
@@ -269,11 +271,13 @@ TEST(ForceChains, AColumnUnderLoadIsOneChain) {
 
 TEST(ForceChains, ABendBreaksIt) {
   const auto lengths = [](double bend) {
-    const State state = sized({1, 1, 1, 1, 1, 1, 1});
-    const Vec3 up{0, 0, 2}, aside{2 * std::sin(bend), 0, 2 * std::cos(bend)}, back = -aside;
+    const State state = sized({1, 1, 1, 1, 1, 1, 1, 1, 1, 1});
+    const Vec3 up{0, 0, 2}, aside{2 * std::sin(bend), 0, 2 * std::cos(bend)};
     std::vector contacts{contact(0, 1, up, 9), contact(1, 2, up, 9), contact(3, 4, aside, 9), contact(4, 5, aside, 9)};
     contacts.push_back(contact(2, 3, aside, 2));  // a weak link that leaves the directions of 2 and 3 as they are
-    contacts.push_back(contact(6, 6, back, 1e-6));
+    contacts.push_back(contact(0, no_index, -0.5 * up, 9));
+    contacts.push_back(contact(5, no_index, 0.5 * aside, 9));
+    for (const Index i : {6u, 8u}) contacts.push_back(contact(i, i + 1, up, 1e-6));  // the mean is low
     return force_chains(state, contacts, 0.5).length;
   };
   EXPECT_EQ(lengths(0.3), std::vector{6});
