@@ -4,7 +4,10 @@
 #include <cairo-svg.h>
 #include <cairo.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <numbers>
 #include <utility>
 
@@ -121,6 +124,30 @@ void Canvas::rectangle(Point a, Point b, const Colour& colour, Fill fill) {
   }
   cairo_stroke(c);
   cairo_restore(c);
+}
+
+void Canvas::image(Point a, Point b, std::size_t columns, std::size_t rows, std::span<const Colour> colours) {
+  cairo_t* c = context_.get();
+  const int width = static_cast<int>(columns), height = static_cast<int>(rows);
+  cairo_surface_t* pixels = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
+  unsigned char* data = cairo_image_surface_get_data(pixels);
+  const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(pixels));
+  const auto level = [](double x) { return static_cast<std::uint32_t>(std::lround(255 * std::clamp(x, 0.0, 1.0))); };
+  for (std::size_t row = 0; row < rows && data; ++row)
+    for (std::size_t column = 0; column < columns; ++column) {
+      const Colour& colour = colours[row * columns + column];
+      const std::uint32_t pixel = level(colour.red) << 16 | level(colour.green) << 8 | level(colour.blue);
+      std::memcpy(data + row * stride + 4 * column, &pixel, sizeof pixel);
+    }
+  cairo_surface_mark_dirty(pixels);
+  cairo_save(c);
+  cairo_translate(c, a.x, a.y);
+  cairo_scale(c, (b.x - a.x) / width, (b.y - a.y) / height);
+  cairo_set_source_surface(c, pixels, 0, 0);
+  cairo_pattern_set_filter(cairo_get_source(c), CAIRO_FILTER_NEAREST);
+  cairo_paint(c);
+  cairo_restore(c);
+  cairo_surface_destroy(pixels);
 }
 
 void Canvas::marker(Point at, Marker marker, double size, const Colour& colour) {

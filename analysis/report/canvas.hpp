@@ -48,6 +48,9 @@ class Canvas {
 
   void stroke(std::span<const Point> points, const Pen& pen);
   void rectangle(Point a, Point b, const Colour& colour, Fill fill = Fill::solid);
+  /// `columns` × `rows` equal cells between two corners, row after row from the corner a (alpha is not read); PNG, SVG
+  /// and PDF all hold it as pixels.
+  void image(Point a, Point b, std::size_t columns, std::size_t rows, std::span<const Colour> colours);
   void marker(Point at, Marker marker, double size, const Colour& colour);
   /// Text with the middle of its height of capitals at `at`.
   void text(Point at, const std::string& text, const TextStyle& style);

@@ -41,6 +41,11 @@ std::vector<double> values_on(const Figure& figure, Reference::Across axis) {
     const auto& own = horizontal ? s.x : s.y;
     values.insert(values.end(), own.begin(), own.end());
   }
+  const auto& own = horizontal ? figure.shaded.x : figure.shaded.y;
+  values.insert(values.end(), own.begin(), own.end());
+  if (figure.map.columns > 0)
+    values.insert(values.end(), {horizontal ? figure.map.x_low : figure.map.y_low,
+                                 horizontal ? figure.map.x_high : figure.map.y_high});
   for (const auto& bar : figure.bars)
     if (horizontal)
       values.insert(values.end(), {bar.from, bar.to});
@@ -63,18 +68,21 @@ class Painter {
 
   void paint() {
     canvas_.clip({x_.start, y_.end}, {x_.end, y_.start});
+    map();
     bands();
     grid_lines();
     canvas_.unclip();
     reference_lines();
     bars();
     canvas_.clip({x_.start - 4, top_ - 4}, {x_.end + 4, bottom_ + 4});
+    shaded_points();
     for (std::size_t k = 0; k < figure_.series.size(); ++k) curve(figure_.series[k], look(k));
     canvas_.unclip();
     frame();
     titles();
     legend();
     keys();
+    shade_bar();
   }
 
  private:
@@ -88,7 +96,7 @@ class Painter {
         figure_.references, [](const Reference& r) { return r.axis == Reference::Across::x && !r.label.empty(); });
     if (label_above) top_ += 14;
     bottom_ = figure_.height - 30 - (figure_.x.title.empty() ? 0 : 18) - (figure_.keys.empty() ? 0 : 22);
-    x_.start = left, x_.end = figure_.width - 24;
+    x_.start = left, x_.end = figure_.width - (figure_.shades ? 92 : 24);
     y_.start = figure_.y.rows.empty() ? bottom_ : top_, y_.end = figure_.y.rows.empty() ? top_ : bottom_;
   }
 
@@ -104,6 +112,42 @@ class Painter {
       else
         canvas_.rectangle({x_.start, a}, {x_.end, b}, band.colour, band.fill);
     }
+  }
+
+  void map() {
+    const auto& m = figure_.map;
+    if (m.columns == 0 || !figure_.shades) return;
+    std::vector<Colour> colours;
+    for (const double v : m.value) colours.push_back(figure_.shades->of(v));
+    canvas_.image({x_(m.x_low), y_(m.y_low)}, {x_(m.x_high), y_(m.y_high)}, m.columns, m.rows, colours);
+  }
+
+  void shaded_points() {
+    const auto& s = figure_.shaded;
+    for (std::size_t k = 0; k < s.x.size() && figure_.shades; ++k)
+      if (x_.shows(s.x[k]) && y_.shows(s.y[k]))
+        canvas_.marker({x_(s.x[k]), y_(s.y[k])}, Marker::circle, s.size, figure_.shades->of(s.value[k]));
+  }
+
+  /// The scale of a third quantity, right of the axes.
+  void shade_bar() {
+    if (!figure_.shades) return;
+    const Shades& shades = *figure_.shades;
+    constexpr std::size_t steps = 128;
+    std::vector<Colour> colours;
+    for (std::size_t k = 0; k < steps; ++k)
+      colours.push_back(shades.of(shades.low + (shades.high - shades.low) * (static_cast<double>(k) + 0.5) / steps));
+    const double left = x_.end + 16, right = left + 12;
+    canvas_.image({left, bottom_}, {right, top_}, 1, steps, colours);
+    const std::array corners{Point{left, top_}, Point{right, top_}, Point{right, bottom_}, Point{left, bottom_},
+                             Point{left, top_}};
+    canvas_.stroke(corners, {ink, 0.7});
+    const Scale scale{.low = shades.low, .high = shades.high, .start = bottom_, .end = top_};
+    const Ticks ticks = linear_ticks(shades.low, shades.high, 5);
+    for (const auto& tick : ticks.ticks) canvas_.text({right + 5, scale(tick.value)}, tick.label, small);
+    TextStyle turned{.size = 10.5, .colour = ink, .align = Align::centre};
+    turned.angle = -std::numbers::pi / 2;
+    canvas_.text({figure_.width - 14, (top_ + bottom_) / 2}, with_exponent(shades.title, ticks.exponent), turned);
   }
 
   void grid_lines() {
@@ -156,6 +200,7 @@ class Painter {
   void curve(const Series& series, const Look& look) {
     std::vector<Point> run;
     const auto flush = [&] {
+      if (series.line && figure_.map.columns > 0) canvas_.stroke(run, {{1, 1, 1, 0.8}, 3.6});  // apart from the map
       if (series.line) canvas_.stroke(run, {look.colour, 1.8, look.dash});
       run.clear();
     };
@@ -274,6 +319,18 @@ class Painter {
 };
 
 }  // namespace
+
+Colour Shades::of(double value) const {
+  static const std::vector<Colour> grey{{1, 1, 1}, {0.55, 0.60, 0.68}, {0.08, 0.10, 0.18}};
+  const auto& anchors = colours.empty() ? grey : colours;
+  const double share = std::isfinite(value) ? std::clamp((value - low) / (high - low), 0.0, 1.0) : 0;
+  const double place = share * static_cast<double>(anchors.size() - 1);
+  const auto k = std::min(static_cast<std::size_t>(place), anchors.size() - std::min<std::size_t>(2, anchors.size()));
+  const Colour& a = anchors[k];
+  const Colour& b = anchors[std::min(k + 1, anchors.size() - 1)];
+  const double t = place - static_cast<double>(k);
+  return {a.red + t * (b.red - a.red), a.green + t * (b.green - a.green), a.blue + t * (b.blue - a.blue)};
+}
 
 void write_figure(const Figure& figure, const std::filesystem::path& path) {
   for (const auto& s : figure.series)

@@ -11,7 +11,9 @@
 // Series differ by dash and marker as well as by colour, so a figure survives a grey print.
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "report/canvas.hpp"
@@ -25,6 +27,7 @@ struct Axis {
   bool logarithmic = false;                  ///< values ≤ 0 are then left out
   double low = automatic, high = automatic;  ///< shown range
   std::vector<std::string> rows{};           ///< names of the places 0, 1, 2 … instead of numbers (y: 0 on top)
+  std::vector<std::pair<double, std::string>> marks{};  ///< named places in the place of numbered ticks, ascending
 };
 
 /// A curve, or points. Values that are not finite break the curve.
@@ -63,12 +66,38 @@ struct LegendKey {
   Marker marker = Marker::none;
 };
 
+/// What a third quantity looks like: colours that darken or lighten steadily from low to high, so that grey keeps them
+/// apart. Drawn as a bar beside the axes.
+struct Shades {
+  std::string title{};
+  double low = 0, high = 1;       ///< values beyond take the colour of the end
+  std::vector<Colour> colours{};  ///< at equal steps from low to high, blended in between; empty: white to near black
+
+  Colour of(double value) const;
+};
+
+/// Points whose colour is a third value (Figure::shades). Not in the legend.
+struct ShadedPoints {
+  std::vector<double> x{}, y{}, value{};
+  double size = 3.5;  ///< [pt]
+};
+
+/// A field over a rectangle, cell by cell (Figure::shades), below everything else.
+struct HeatMap {
+  double x_low = 0, x_high = 1, y_low = 0, y_high = 1;  ///< outer edges
+  std::size_t columns = 0, rows = 0;
+  std::vector<double> value{};  ///< row after row from y_low, columns from x_low
+};
+
 struct Figure {
   std::string title{}, subtitle{};
   Axis x{}, y{};
   std::vector<Reference> references{};
   std::vector<Bar> bars{};
   std::vector<Series> series{};
+  HeatMap map{};  ///< drawn when it has cells; its axes are linear
+  ShadedPoints shaded{};
+  std::optional<Shades> shades{};    ///< needed by a map or shaded points
   std::vector<LegendKey> keys{};     ///< of bars; drawn below the axes
   double width = 560, height = 380;  ///< [pt]
 };

@@ -36,6 +36,12 @@ Scale scale_for(const Axis& axis, const std::vector<double>& values) {
 }
 
 Ticks ticks_for(const Axis& axis, const Scale& scale) {
+  if (!axis.marks.empty()) {
+    Ticks named;
+    for (const auto& [value, name] : axis.marks)
+      if (scale.shows(value)) named.ticks.push_back({value, name});
+    return named;
+  }
   if (axis.rows.empty())
     return axis.logarithmic ? log_ticks(scale.low, scale.high) : linear_ticks(scale.low, scale.high);
   Ticks result;

@@ -53,6 +53,26 @@ TEST_F(Drawn, EndingChoosesTheFormat) {
   EXPECT_THROW(write_figure(figure, "/proc/nowhere/a.png"), InputError);
 }
 
+TEST_F(Drawn, MapAndShadedPointsWithTheirScale) {
+  Figure figure;
+  figure.map = {.x_high = 2, .columns = 2, .rows = 1, .value = {0, 1}};
+  EXPECT_EQ(count(draw(figure, "none.svg"), "<image"), 0u);  // nothing says what a value looks like
+  figure.shades = Shades{.title = "share [-]"};
+  EXPECT_GE(count(draw(figure, "map.svg"), "<image"), 2u);  // the map and the bar
+  figure.map = {};
+  figure.shaded = {.x = {0, 1, 2}, .y = {0, 1, 4}, .value = {0, 0.5, 1}};
+  figure.x.marks = {{0, "Γ"}, {2, "X"}};
+  EXPECT_EQ(draw(figure, "a.png").substr(1, 3), "PNG");
+}
+
+TEST(Shades, BlendEvenlyAndStopAtTheEnds) {
+  const Shades shades{.low = 2, .high = 4, .colours = {{0, 0, 0}, {1, 0.5, 0}}};
+  EXPECT_DOUBLE_EQ(shades.of(3).red, 0.5);
+  EXPECT_DOUBLE_EQ(shades.of(9).green, 0.5);
+  EXPECT_DOUBLE_EQ(shades.of(-1).red, 0);
+  EXPECT_DOUBLE_EQ(Shades{}.of(0).red, 1);  // white where there is nothing
+}
+
 TEST_F(Drawn, SameFigureSameFile) {
   const auto figure = curve({0, 1, 2}, {1, 4, 9});
   EXPECT_EQ(draw(figure, "a.png"), draw(figure, "b.png"));
