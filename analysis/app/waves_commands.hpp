@@ -1,0 +1,9 @@
+#pragma once
+// The subcommands of `eigengrain waves`, a file each.
+#include "app/commands.hpp"
+
+namespace eg {
+
+void add_waves_dispersion(CLI::App& waves, Action& action);
+
+}  // namespace eg
