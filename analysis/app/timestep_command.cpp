@@ -9,6 +9,7 @@
 #include "app/timestep_report.hpp"
 #include "assembly/linearise.hpp"
 #include "base/progress.hpp"
+#include "state/damping.hpp"
 #include "timestep/verify.hpp"
 
 namespace eg {
@@ -41,6 +42,8 @@ int timestep_command(const TimestepFlags& flags) {
   report.dimension = net.dimension, report.rotation = net.rotation;
   report.summary = summarise(net);
   report.interval = step_interval(net);
+  report.damping = damping_in_force(work.scene, work.state);
+  if (report.damping.any()) report.damped = damped_interval(net, report.damping, report.interval);
   const Material& m = work.scene.materials.front();
   const auto known = [](double x) { return std::isnan(x) ? std::nullopt : std::optional<double>(x); };
   report.estimates =
@@ -51,7 +54,7 @@ int timestep_command(const TimestepFlags& flags) {
   }
   if (flags.verify && report.interval.lambda_upper > 0) {
     Progress progress("stepping a perturbation", 1, "");
-    VerifyOptions options;
+    BracketOptions options;
     options.guess = report.interval.dt_safe;
     options.progress = [&](double share) { progress.update(std::min(share, 1.0)); };
     report.bracket = verify_by_stepping(net, options);

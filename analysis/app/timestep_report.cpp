@@ -1,6 +1,6 @@
 #include "app/timestep_report.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 
@@ -14,12 +14,38 @@ namespace {
 /// The limit that ratios refer to: the middle of the interval.
 double reference(const StepInterval& v) { return 0.5 * (v.dt_safe + v.dt_limit_upper); }
 
+nlohmann::json number_or_null(double x) { return std::isfinite(x) ? nlohmann::json(x) : nlohmann::json(nullptr); }
+
 Table estimate_table(const TimestepReport& r) {
   Table t(
       {{"name", "estimate"}, {"dt", "step", "s"}, {"ratio", "over limit", "-"}, {"verdict"}, {"formula"}, {"source"}});
   for (const auto& e : r.estimates)
     t.add({e.name, e.dt, e.dt / reference(r.interval), verdict(e.dt, r.interval), e.formula, e.source});
   return t;
+}
+
+std::string damping_text(const DampingSpec& d) {
+  std::vector<std::string> parts;
+  if (d.local > 0) parts.push_back(fmt::format("local {:g}", d.local));
+  if (d.mass > 0) parts.push_back(fmt::format("mass {:g} 1/s", d.mass));
+  if (d.dashpots()) parts.push_back(fmt::format("dashpots {:g} normal, {:g} shear", d.normal_ratio, d.shear_ratio));
+  return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+/// How far the lower end of the damped interval is proved: local damping is no linear term.
+const char* damped_claim(const DampingSpec& d) { return d.local > 0 ? "stable as far as measured" : "proved stable"; }
+
+nlohmann::json damped_json(const TimestepReport& r) {
+  if (!r.damped) return nullptr;
+  const auto& d = r.damping;
+  return {{"local", d.local},
+          {"mass_per_s", d.mass},
+          {"normal_ratio", d.normal_ratio},
+          {"shear_ratio", d.shear_ratio},
+          {"dt_safe", number_or_null(r.damped->dt_safe)},
+          {"dt_limit_upper", number_or_null(r.damped->dt_limit_upper)},
+          {"lower_end_proved", d.local == 0},
+          {"methods", {{"lower", r.damped->method_lower}, {"upper", r.damped->method_upper}}}};
 }
 
 }  // namespace
@@ -40,7 +66,15 @@ std::string text_of(const TimestepReport& r) {
   line("contacts",
        fmt::format("{}, coordination {:.2f}, at most {}", r.contacts, s.coordination_mean, s.coordination_max));
   line("mass", fmt::format("{:.4g} … {:.4g} kg", s.mass_min, s.mass_max));
+  const auto damped_lines = [&] {
+    if (!r.damped || !std::isfinite(r.damped->dt_safe)) return;
+    line("with damping",
+         fmt::format("{:.6g} … {:.6g} s   ({})", r.damped->dt_safe, r.damped->dt_limit_upper, damping_text(r.damping)));
+    line(fmt::format("  {}", damped_claim(r.damping)).c_str(), fmt::format("{:.8g} s", r.damped->dt_safe));
+    line("  proved unstable above", fmt::format("{:.8g} s", r.damped->dt_limit_upper));
+  };
   if (r.contacts == 0) {
+    damped_lines();
     out += "\nNothing touches: no contact is stiff, so nothing limits the step here. Compress the packing first.\n";
     return out;
   }
@@ -58,6 +92,7 @@ std::string text_of(const TimestepReport& r) {
   if (r.bracket)
     line("  found by stepping", fmt::format("{:.6g} s runs, {:.6g} s blows up   ({} steps)", r.bracket->stable,
                                             r.bracket->unstable, r.bracket->steps));
+  damped_lines();
   line("limiting particle", fmt::format("id {}, radius {:.4g} m, {} contacts, {:.1f} % of the mode", r.limiting_id,
                                         r.limiting_radius, v.coordination, 100 * v.grain_share));
   line("grains in the mode", fmt::format("{:.1f} (participation number)", v.participation));
@@ -69,7 +104,6 @@ std::string text_of(const TimestepReport& r) {
 
 nlohmann::json json_of(const TimestepReport& r) {
   const auto& v = r.interval;
-  const auto number = [](double x) { return std::isfinite(x) ? nlohmann::json(x) : nlohmann::json(nullptr); };
   nlohmann::json j{
       {"input", r.name},
       {"title", r.title},
@@ -79,10 +113,11 @@ nlohmann::json json_of(const TimestepReport& r) {
       {"contacts", r.contacts},
       {"lambda_lower", v.lambda_lower},
       {"lambda_upper", v.lambda_upper},
-      {"dt_safe", number(v.dt_safe)},
-      {"dt_limit_upper", number(v.dt_limit_upper)},
+      {"dt_safe", number_or_null(v.dt_safe)},
+      {"dt_limit_upper", number_or_null(v.dt_limit_upper)},
       {"methods",
        {{"lower", v.method_lower}, {"upper", v.method_upper}, {"products", v.products}, {"residual", v.residual}}},
+      {"damped", damped_json(r)},
       {"participation", v.participation},
       {"elapsed_s", r.elapsed}};
   const auto& s = r.summary;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "report/plot.hpp"
+#include "timestep/damped_interval.hpp"
 #include "timestep/estimates.hpp"
 #include "timestep/interval.hpp"
 #include "timestep/verify.hpp"
@@ -18,6 +19,8 @@ struct TimestepReport {
   bool rotation = true;
   NetworkSummary summary;
   StepInterval interval;
+  DampingSpec damping;                   ///< in force
+  std::optional<DampedInterval> damped;  ///< when there is any
   Index limiting_id = no_index;
   double limiting_radius = 0;  ///< [m]
   std::vector<Estimate> estimates;

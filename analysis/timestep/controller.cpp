@@ -8,6 +8,8 @@
 
 #include "assembly/linearise.hpp"
 #include "base/error.hpp"
+#include "state/damping.hpp"
+#include "timestep/damped_interval.hpp"
 #include "timestep/estimates.hpp"
 #include "timestep/scalar_weights.hpp"
 
@@ -75,9 +77,11 @@ double Controller::free_limit(const State& state) const {
   pair.contacts.history_size = state.contacts.history_size,
   pair.contacts.history_vectors = state.contacts.history_vectors;
   pair.contacts.history.assign(Contacts::lanes * pair.contacts.history_size, 0.0);
-  Network net = linearise(scene_, pair);
-  for (auto& s : net.springs) s.normal *= 12, s.tangential *= 12;
-  return 2 / std::sqrt(splitting_bound(net).value);
+  const Network net = linearise(scene_, pair);
+  return damped_safe_step(net, damping_in_force(scene_, state), 0, [](Network twelve) {
+    for (auto& s : twelve.springs) s.normal *= 12, s.tangential *= 12;
+    return splitting_bound(twelve).value;
+  });
 }
 
 void Controller::evaluate(State& state) {
@@ -88,7 +92,10 @@ void Controller::evaluate(State& state) {
   const Network net = linearise(scene_, state, closing(state, static_cast<double>(plan.horizon) * dt));
   const double cap = free_limit(state);
   const Sides sides(net);
-  plan.safe = std::min(cap, 2 / std::sqrt(splitting_bound(sides, {.scalar_sweeps = 8, .matrix_sweeps = 0}).value));
+  const auto bound = [](const Network& n) {
+    return splitting_bound(n, {.scalar_sweeps = 8, .matrix_sweeps = 0}).value;
+  };
+  plan.safe = std::min(cap, damped_safe_step(net, damping_in_force(scene_, state), plan.safe, bound));
   const auto& spec = scene_.timestep;
   if (spec.policy == "certified")
     plan.dt = spec.safety * plan.safe;

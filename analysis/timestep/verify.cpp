@@ -13,7 +13,7 @@ namespace {
 
 class Stepper {
  public:
-  Stepper(const Network& network, const VerifyOptions& options)
+  Stepper(const Network& network, const BracketOptions& options)
       : a_(network, StiffnessOperator::Scaling::mass),
         start_(random_unit_vector(a_.rows(), options.seed)),
         force_(a_.rows()) {
@@ -61,32 +61,9 @@ class Stepper {
 
 }  // namespace
 
-StabilityBracket verify_by_stepping(const Network& network, const VerifyOptions& options) {
-  if (!(options.guess > 0)) throw std::invalid_argument("verify_by_stepping: guess must be positive");
+StabilityBracket verify_by_stepping(const Network& network, const BracketOptions& options) {
   Stepper stepper(network, options);
-  StabilityBracket bracket;
-  const auto grows = [&](double dt) {
-    ++bracket.trials;
-    return stepper.grows(dt, bracket.steps);
-  };
-  double factor = 1.02;
-  if (grows(options.guess)) {
-    bracket.unstable = options.guess;
-    for (bracket.stable = options.guess / factor; grows(bracket.stable); bracket.stable /= factor *= factor)
-      bracket.unstable = bracket.stable;
-  } else {
-    bracket.stable = options.guess;
-    for (bracket.unstable = options.guess * factor; !grows(bracket.unstable); bracket.unstable *= factor *= factor)
-      bracket.stable = bracket.unstable;
-  }
-  const double first = std::log(bracket.unstable / bracket.stable), last = std::log1p(options.tolerance);
-  while (bracket.unstable > bracket.stable * (1 + options.tolerance)) {
-    const double middle = 0.5 * (bracket.stable + bracket.unstable);
-    (grows(middle) ? bracket.unstable : bracket.stable) = middle;
-    if (options.progress)
-      options.progress(std::log(first / std::log(bracket.unstable / bracket.stable)) / std::log(first / last));
-  }
-  return bracket;
+  return bracket_limit(options, [&](double dt, std::int64_t& steps) { return stepper.grows(dt, steps); });
 }
 
 }  // namespace eg

@@ -15,7 +15,7 @@ Engine::Engine(const Scene& scene, State& state, bool scalar) : scene_(scene), s
   for (const auto& s : scene.stages) frictionless = frictionless && s.friction.value_or(0) == 0;
   loop_ = make_force_loop(scene.contact.law, frictionless, state_.grains.rotates());
   loop_->set_materials(scene.materials, state_.friction, scene.dimension);
-  const bool viscous = scene.energy && (scene.damping.normal_ratio > 0 || scene.damping.shear_ratio > 0);
+  const bool viscous = scene.energy && scene.damping.dashpots();
   options_ = {arms_of(scene), scene.damping.normal_ratio, scene.damping.shear_ratio, TallyLevel::none, viscous, scalar};
   kick_ = {scene.damping.local, scene.damping.mass, scene.gravity, scene.dimension};
   last_dt_ = state_.dt;

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "boundary/cell_control.hpp"
+#include "state/damping.hpp"
 
 namespace eg {
 namespace {
@@ -25,7 +26,7 @@ void begin_stage(const Scene& scene, State& state) {
 
 void apply_stage(const Scene& scene, const State& state, Engine& engine) {
   engine.set_friction(std::vector<double>(state.friction));
-  engine.set_local_damping(scene.stages[state.stage].local_damping.value_or(scene.damping.local));
+  engine.set_local_damping(damping_in_force(scene, state).local);
 }
 
 bool finished(const State& state, const StageSpec& s, const RunStatus& status, bool checked) {

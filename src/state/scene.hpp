@@ -68,6 +68,9 @@ struct DampingSpec {
   double mass = 0;          ///< [1/s]: −c m v, −c I ω
   double normal_ratio = 0;  ///< ξn [-]: contact dashpot 2ξn√(m* kn)
   double shear_ratio = 0;   ///< ξs [-]: contact dashpot 2ξs√(m* kt)
+
+  bool dashpots() const { return normal_ratio > 0 || shear_ratio > 0; }
+  bool any() const { return local > 0 || mass > 0 || dashpots(); }
 };
 
 /// [timestep]

@@ -8,8 +8,9 @@
 #include "dynamics/run.hpp"
 #include "io/scene_file.hpp"
 #include "support/scenes.hpp"
+#include "state/damping.hpp"
 #include "timestep/controller.hpp"
-#include "timestep/interval.hpp"
+#include "timestep/damped_interval.hpp"
 
 namespace eg {
 namespace {
@@ -68,7 +69,8 @@ TEST(Controller, StaysBelowTheExactLimitAndNearIt) {
   RunObserver observer;
   observer.step = [&](const State& s, const RunStatus& status) {
     if (s.step % 97 != 0) return;
-    const double limit = step_interval(linearise(scene, s)).dt_limit_upper;
+    const Network net = linearise(scene, s);
+    const double limit = damped_interval(net, damping_in_force(scene, s), step_interval(net)).dt_limit_upper;
     if (std::isinf(limit)) return;
     Share& share = shares[status.stage.name];
     share.largest = std::max(share.largest, s.dt / limit);
