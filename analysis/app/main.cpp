@@ -48,6 +48,7 @@ int main(int argc, char** argv) {
   eg::add_run_command(app, action);
   eg::add_timestep_command(app, action);
   eg::add_waves_command(app, action);
+  eg::add_measure_command(app, action);
   eg::add_info_command(app, action);
   try {
     check_subcommand(app, argc, argv);

@@ -100,6 +100,16 @@ void Canvas::stroke(std::span<const Point> points, const Pen& pen) {
   cairo_stroke(context_.get());
 }
 
+void Canvas::polygon(std::span<const Point> corners, const Colour& colour) {
+  set({colour, 0.4, Dash::solid});
+  cairo_t* c = context_.get();
+  cairo_new_path(c);
+  for (const auto& p : corners) cairo_line_to(c, p.x, p.y);
+  cairo_close_path(c);
+  cairo_fill_preserve(c);
+  cairo_stroke(c);
+}
+
 void Canvas::rectangle(Point a, Point b, const Colour& colour, Fill fill) {
   cairo_t* c = context_.get();
   const double left = std::min(a.x, b.x), right = std::max(a.x, b.x), top = std::min(a.y, b.y),

@@ -47,6 +47,8 @@ class Canvas {
   void save();
 
   void stroke(std::span<const Point> points, const Pen& pen);
+  /// Fills the closed polygon and draws its edge in the same colour, so that neighbours leave no gap.
+  void polygon(std::span<const Point> corners, const Colour& colour);
   void rectangle(Point a, Point b, const Colour& colour, Fill fill = Fill::solid);
   /// `columns` × `rows` equal cells between two corners, row after row from the corner a (alpha is not read); PNG, SVG
   /// and PDF all hold it as pixels.

@@ -10,10 +10,12 @@ namespace {
 
 constexpr double circle = 2 * std::numbers::pi;
 
+/// Equal sectors, the first one around 0, so that the directions of lattices do not lie on edges.
 int azimuth_bin(const Vec3& n, int bins) {
-  const double angle = std::atan2(n.y, n.x);
-  return std::min(bins - 1, static_cast<int>((angle < 0 ? angle + circle : angle) / circle * bins));
+  const double sectors = std::atan2(n.y, n.x) / circle * bins;
+  return (static_cast<int>(std::floor(sectors + 0.5)) + bins) % bins;
 }
+double edge(int k, int bins) { return circle * (k - 0.5) / bins; }
 
 /// Petals in place, counted by `bin_of`.
 template <class Bin>
@@ -39,7 +41,7 @@ std::vector<Petal> count(std::vector<Petal> petals, std::span<const ContactPoint
 
 std::vector<Petal> rose_2d(std::span<const ContactPoint> contacts, int sectors) {
   std::vector<Petal> petals;
-  for (int k = 0; k < sectors; ++k) petals.push_back({circle * k / sectors, circle * (k + 1) / sectors});
+  for (int k = 0; k < sectors; ++k) petals.push_back({edge(k, sectors), edge(k + 1, sectors)});
   return count(petals, contacts, [&](const Vec3& n) { return azimuth_bin(n, sectors); });
 }
 
@@ -48,7 +50,7 @@ std::vector<Petal> rose_3d(std::span<const ContactPoint> contacts, int rings) {
   std::vector<Petal> petals;
   for (int r = 0; r < rings; ++r)
     for (int k = 0; k < around; ++k)
-      petals.push_back({circle * k / around, circle * (k + 1) / around, 2.0 * r / rings - 1, 2.0 * (r + 1) / rings - 1});
+      petals.push_back({edge(k, around), edge(k + 1, around), 2.0 * r / rings - 1, 2.0 * (r + 1) / rings - 1});
   return count(petals, contacts, [&](const Vec3& n) {
     const int ring = std::clamp(static_cast<int>((n.z + 1) / 2 * rings), 0, rings - 1);
     return ring * around + azimuth_bin(n, around);

@@ -18,10 +18,10 @@ struct Petal {
   double force = 0;
 };
 
-/// 2D: `sectors` equal angles. Even, so that n and −n are alike.
+/// 2D: `sectors` equal angles, the first one around x. Even, so that n and −n are alike.
 std::vector<Petal> rose_2d(std::span<const ContactPoint>, int sectors = 36);
 
 /// 3D: patches of equal area, `rings` of equal height times 2 `rings` azimuths.
-std::vector<Petal> rose_3d(std::span<const ContactPoint>, int rings = 12);
+std::vector<Petal> rose_3d(std::span<const ContactPoint>, int rings = 8);
 
 }  // namespace eg

@@ -144,11 +144,7 @@ TEST(Rose, AHexagonalLatticeHasSixPetals) {
   const Scene scene = test::lattice_scene("linear", "hexagonal", {4, 4, 1}, 1e-3);
   State state = test::state_of(scene);
   rebuild_neighbours(state, 1e-4, 1e-5);
-  auto contacts = touching_contacts(scene, state);
-  for (auto& c : contacts) {  // turned by some angle, so that no direction lies on the edge of a sector
-    const Vec3 n = c.geometry.n;
-    c.geometry.n = {std::cos(0.1) * n.x - std::sin(0.1) * n.y, std::sin(0.1) * n.x + std::cos(0.1) * n.y, 0};
-  }
+  const auto contacts = touching_contacts(scene, state);
   for (const auto& p : rose_2d(contacts, 6)) EXPECT_NEAR(p.density, 1, 1e-12);
   int petals = 0;
   for (const auto& p : rose_2d(contacts, 90)) {

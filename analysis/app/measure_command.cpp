@@ -1,0 +1,71 @@
+// eigengrain measure SNAPSHOT|SCENE|PACKING: stress, fabric, forces, sizes of a packing.
+#include <fmt/format.h>
+
+#include "app/commands.hpp"
+#include "app/measure_figure.hpp"
+#include "app/measure_report.hpp"
+#include "app/packing_input.hpp"
+#include "base/error.hpp"
+#include "io/vtk.hpp"
+
+namespace eg {
+namespace {
+
+struct MeasureFlags {
+  PackingFlags packing;
+  std::string figure, plot = "rose", chains;
+  std::vector<double> splits;
+  std::vector<std::vector<double>> spheres;
+};
+
+std::vector<MeasureSphere> spheres_of(const MeasureFlags& flags, int dimension) {
+  std::vector<MeasureSphere> spheres;
+  for (const auto& s : flags.spheres) {
+    const auto size = static_cast<std::size_t>(dimension) + 1;
+    if (s.size() != size || !(s.back() > 0))
+      throw input_error(flags.packing.input, 0, "--sphere", fmt::format("takes {} numbers in {}D", size, dimension),
+                        dimension == 3 ? "give X,Y,Z,RADIUS in m" : "give X,Y,RADIUS in m");
+    spheres.push_back({{s[0], s[1], dimension == 3 ? s[2] : 0.0}, s.back()});
+  }
+  return spheres;
+}
+
+int measure_command(const MeasureFlags& flags) {
+  check_figure(flags.figure);
+  if (!std::ranges::is_sorted(flags.splits, std::ranges::less_equal{}) ||
+      (!flags.splits.empty() && flags.splits[0] <= 0))
+    throw input_error(flags.packing.input, 0, "--split", "must be diameters that ascend", "for example 0.15e-3,0.3e-3");
+  const Snapshot packing = load_packing(flags.packing);
+  const auto contacts = touching_contacts(packing.scene, packing.state);
+  const auto report =
+      measure_report(packing, flags.packing.input, contacts, flags.splits, spheres_of(flags, packing.state.dimension));
+  if (flags.packing.json)
+    fmt::print("{}\n", json_of(report).dump(2));
+  else
+    fmt::print("{}", text_of(report));
+  if (!flags.figure.empty()) draw_measure(report, flags.plot, flags.figure);
+  if (!flags.chains.empty()) {
+    write_network_vtp(flags.chains, packing.state, contacts, force_chains(packing.state, contacts));
+    fmt::print(stderr, "contacts and force chains: {}\n", flags.chains);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_measure_command(CLI::App& app, Action& action) {
+  auto* sub = app.add_subcommand("measure", "stress, fabric, forces and sizes of a packing");
+  auto flags = std::make_shared<MeasureFlags>();
+  add_packing_options(*sub, flags->packing);
+  sub->add_option("--figure", flags->figure, "draw a figure (.svg, .png or .pdf): the one named by --plot");
+  sub->add_option("--plot", flags->plot,
+                  "which figure: rose (default), force-rose, connectivity, forces, spins, fractions")
+      ->check(CLI::IsMember(measure_figures()));
+  sub->add_option("--chains", flags->chains, "write contacts and force chains for ParaView (.vtp)");
+  sub->add_option("--split", flags->splits, "diameters between size fractions, D1,D2,... [m]")->delimiter(',');
+  sub->add_option("--sphere", flags->spheres, "measure inside a sphere X,Y,Z,RADIUS (2D: X,Y,RADIUS) [m]; repeatable")
+      ->delimiter(',');
+  sub->callback([flags, &action] { action = [flags] { return measure_command(*flags); }; });
+}
+
+}  // namespace eg
