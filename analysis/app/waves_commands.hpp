@@ -5,5 +5,6 @@
 namespace eg {
 
 void add_waves_dispersion(CLI::App& waves, Action& action);
+void add_waves_modes(CLI::App& waves, Action& action);
 
 }  // namespace eg

@@ -51,7 +51,7 @@ void write_piece(const std::string& path, const std::string& piece, const Append
 
 }  // namespace
 
-void write_vtp(const std::string& path, const State& state) {
+void write_vtp(const std::string& path, const State& state, std::span<const GrainField> fields) {
   const auto& grains = state.grains;
   const std::size_t n = grains.size();
   std::vector<double> point, radius, velocity;
@@ -70,6 +70,7 @@ void write_vtp(const std::string& path, const State& state) {
   xml += data.array("Float64", "radius", 1, radius);
   xml += data.array("Float64", "velocity", 3, velocity);
   xml += data.array("UInt32", "id", 1, grains.id);
+  for (const auto& field : fields) xml += data.array("Float64", field.name.c_str(), field.components, field.data);
   xml += "</PointData>\n<Points>\n" + data.array("Float64", "position", 3, point) + "</Points>\n<Verts>\n";
   xml += data.array("Int64", "connectivity", 1, connectivity) + data.array("Int64", "offsets", 1, offset);
   write_piece(path, xml + "</Verts>\n", data);
