@@ -133,7 +133,7 @@ Eigenpairs eigenpairs_near(Index count, const BlockMap& inverse, const BlockMap&
                            const InverseKrylovOptions& options) {
   const auto rows = static_cast<Index>(std::lround(active.sum()));
   count = std::min(count, rows);
-  if (count == 0) return {.converged = true};
+  if (count == 0) return {{}, {}, {}, 0, true};
   const Index block = std::min<Index>(options.block, rows);
   const Index room = std::min(rows, 2 * count + 4 * block + 20) + block;
   Space space(active.size(), room, active, options.seed);
