@@ -111,6 +111,15 @@ EG_INLINE Batch reciprocal(Batch a) {
   return Batch(1.0) / a;
 #endif
 }
+/// 1/a to 4e-9.
+EG_INLINE Batch rough_reciprocal(Batch a) {
+#if defined(__AVX512F__)
+  const Double8 y = _mm512_maskz_rcp14_pd(0xff, a.v);
+  return y + y * (1.0 - a.v * y);
+#else
+  return Batch(1.0) / a;
+#endif
+}
 /// Sum over lanes in a fixed order.
 EG_INLINE double sum(Batch a) {
   return ((a.v[0] + a.v[1]) + (a.v[2] + a.v[3])) + ((a.v[4] + a.v[5]) + (a.v[6] + a.v[7]));
@@ -158,6 +167,24 @@ EG_INLINE void transpose_columns(const QuadColumns& q, Double4 (&r)[8]) {
   r[1] = __builtin_shufflevector(p1, p1, 0, 1, 2, 3), r[5] = __builtin_shufflevector(p1, p1, 4, 5, 6, 7);
   r[2] = __builtin_shufflevector(p2, p2, 0, 1, 2, 3), r[6] = __builtin_shufflevector(p2, p2, 4, 5, 6, 7);
   r[3] = __builtin_shufflevector(p3, p3, 0, 1, 2, 3), r[7] = __builtin_shufflevector(p3, p3, 4, 5, 6, 7);
+}
+
+/// Two sets of columns side by side: row k holds lane k of p and behind it lane k of q.
+EG_INLINE void transpose_columns(const QuadColumns& p, const QuadColumns& q, Double8 (&r)[8]) {
+  const auto even = [](Batch a, Batch b) { return __builtin_shufflevector(a.v, b.v, 0, 8, 2, 10, 4, 12, 6, 14); };
+  const auto odd = [](Batch a, Batch b) { return __builtin_shufflevector(a.v, b.v, 1, 9, 3, 11, 5, 13, 7, 15); };
+  const auto rows = [&r](Double8 a, Double8 b, Double8 c, Double8 d, std::size_t first) {
+    const Double8 ab0 = __builtin_shufflevector(a, b, 0, 1, 4, 5, 8, 9, 12, 13);  // parts 0 and 2 of each
+    const Double8 ab1 = __builtin_shufflevector(a, b, 2, 3, 6, 7, 10, 11, 14, 15);
+    const Double8 cd0 = __builtin_shufflevector(c, d, 0, 1, 4, 5, 8, 9, 12, 13);
+    const Double8 cd1 = __builtin_shufflevector(c, d, 2, 3, 6, 7, 10, 11, 14, 15);
+    r[first] = __builtin_shufflevector(ab0, cd0, 0, 1, 4, 5, 8, 9, 12, 13);
+    r[first + 4] = __builtin_shufflevector(ab0, cd0, 2, 3, 6, 7, 10, 11, 14, 15);
+    r[first + 2] = __builtin_shufflevector(ab1, cd1, 0, 1, 4, 5, 8, 9, 12, 13);
+    r[first + 6] = __builtin_shufflevector(ab1, cd1, 2, 3, 6, 7, 10, 11, 14, 15);
+  };
+  rows(even(p.x, p.y), even(p.z, p.w), even(q.x, q.y), even(q.z, q.w), 0);
+  rows(odd(p.x, p.y), odd(p.z, p.w), odd(q.x, q.y), odd(q.z, q.w), 1);
 }
 
 }  // namespace eg

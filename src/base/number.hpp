@@ -38,6 +38,24 @@ EG_INLINE S root(const S& a) {
   return sqrt(a);
 }
 
+/// √(a/b) for a ≥ 0, b > 0, without a division.
+EG_INLINE Batch root_of_ratio(Batch a, Batch b) { return a * rsqrt(max(a * b, Batch(1e-300))); }
+template <class S>
+EG_INLINE S root_of_ratio(const S& a, const S& b) {
+  return sqrt(a / b);
+}
+
+/// √(a/b) of nearly equal a, b ≥ 0 (1 when a = 0): for batches by a series in e = (a − b)/a, exact to round-off for
+/// |e| < 1e-4.
+EG_INLINE Batch root_of_near(Batch a, Batch b) {
+  const Batch e = (a - b) * rough_reciprocal(max(a, Batch(1e-300)));
+  return Batch(1.0) + e * (Batch(0.5) + e * (Batch(0.375) + e * Batch(0.3125)));
+}
+template <class S>
+EG_INLINE S root_of_near(const S& a, const S& b) {
+  return a * rsqrt(max(a * b, S(1e-300)));
+}
+
 template <class S>
 inline constexpr std::size_t lanes_of = 1;
 template <>

@@ -25,7 +25,7 @@ struct HertzMindlinLaw {
   };
   template <class S>
   struct Pair {
-    S e_star, g_star, r_star, friction;
+    S e_star, g_star, product, length, friction;  // R* = product/length
   };
 
   /// 1/E* = Σ(1−ν²)/E with E = 2G(1+ν), so (1−ν)/(2G) a side; 1/G* = Σ(2−ν)/G.
@@ -37,12 +37,12 @@ struct HertzMindlinLaw {
 
   template <class S>
   EG_INLINE static Pair<S> pair(const Constants<S>& c, const Sizes<S>& sizes) {
-    return {c.e_star, c.g_star, sizes.r_star, c.friction};
+    return {c.e_star, c.g_star, sizes.product, sizes.length, c.friction};
   }
 
   template <class S>
   EG_INLINE static NormalResponse<S> normal(const Pair<S>& p, const S& overlap) {
-    const S a = root(p.r_star * overlap);
+    const S a = root_of_ratio(p.product * overlap, p.length);
     const S ea = p.e_star * a;
     return {S(4.0 / 3.0) * ea * overlap, S(2.0) * ea, S(8.0) * p.g_star * a};
   }

@@ -81,7 +81,7 @@ EG_INLINE Vec<S> turn(const Vec<S>& old, const Vec<S>& n, const S& twist) {
   Vec<S> turned = old - n * out;
   turned += cross(n, turned) * twist;
   const S before = dot(old, old), after = dot(turned, turned);
-  return turned * (before * rsqrt(max(before * after, S(1e-300))));
+  return turned * root_of_near(before, after);
 }
 
 /// Contact dashpots: ratio ξ of critical damping of the pair, 2ξ√(m* k); zero is off.

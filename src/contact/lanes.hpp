@@ -33,21 +33,6 @@ EG_INLINE Columns<S> load_difference(const Quad* rows, const Index* i, const Ind
   }
 }
 
-/// weight_i · row i + weight_j · row j, the weights being the w of another array (radii); w is meaningless.
-template <class S>
-EG_INLINE Columns<S> load_weighted_sum(const Quad* rows, const Quad* weights, const Index* i, const Index* j) {
-  if constexpr (lanes_of<S> == 1) {
-    const Vec3 v = rows[i[0]].vec() * weights[i[0]].w + rows[j[0]].vec() * weights[j[0]].w;
-    return {v.x, v.y, v.z, 0.0};
-  } else {
-    const auto row = [&](std::size_t k) {
-      return quad_vector(rows[i[k]]) * weights[i[k]].w + quad_vector(rows[j[k]]) * weights[j[k]].w;
-    };
-    const auto c = transpose_rows(row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7));
-    return {c.x, c.y, c.z, c.w};
-  }
-}
-
 /// Rows index[0…lanes) as they are.
 template <class S>
 EG_INLINE Columns<S> load_rows(const Quad* rows, const Index* index) {
@@ -56,19 +41,6 @@ EG_INLINE Columns<S> load_rows(const Quad* rows, const Index* index) {
     return {q.x, q.y, q.z, q.w};
   } else {
     const auto row = [&](std::size_t k) { return quad_vector(rows[index[k]]); };
-    const auto c = transpose_rows(row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7));
-    return {c.x, c.y, c.z, c.w};
-  }
-}
-
-/// row i + row j; w is meaningless.
-template <class S>
-EG_INLINE Columns<S> load_sum(const Quad* rows, const Index* i, const Index* j) {
-  if constexpr (lanes_of<S> == 1) {
-    const Vec3 v = rows[i[0]].vec() + rows[j[0]].vec();
-    return {v.x, v.y, v.z, 0.0};
-  } else {
-    const auto row = [&](std::size_t k) { return quad_vector(rows[i[k]]) + quad_vector(rows[j[k]]); };
     const auto c = transpose_rows(row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7));
     return {c.x, c.y, c.z, c.w};
   }
@@ -94,20 +66,20 @@ EG_INLINE void add_contact(Quad* rows, const Index* i, const Index* j, const Vec
     const auto add = [](Quad& q, const Vec3& v) { q.set(q.vec() + v); };
     add(rows[stride * i[0]], -f), add(rows[stride * j[0]], f);
     if constexpr (stride == 2) add(rows[2 * i[0] + 1], moment * arm_i), add(rows[2 * j[0] + 1], moment * arm_j);
+  } else if constexpr (stride == 2) {
+    const auto at = [rows](std::size_t k) -> Double8& { return *reinterpret_cast<Double8*>(rows + 2 * k); };
+    Double8 row[8];
+    transpose_columns({f.x, f.y, f.z, Batch(0.0)}, {moment.x, moment.y, moment.z, Batch(0.0)}, row);
+    for (std::size_t k = 0; k < 8; ++k) {
+      const double ai = arm_i[k], aj = arm_j[k];
+      at(i[k]) += row[k] * Double8{-1, -1, -1, -1, ai, ai, ai, ai};
+      at(j[k]) += row[k] * Double8{1, 1, 1, 1, aj, aj, aj, aj};
+    }
   } else {
+    const auto at = [rows](std::size_t k) -> Double4& { return *reinterpret_cast<Double4*>(rows + k); };
     Double4 force[8];
     transpose_columns({f.x, f.y, f.z, Batch(0.0)}, force);
-    const auto at = [rows](std::size_t k) -> Double4& { return *reinterpret_cast<Double4*>(rows + k); };
-    if constexpr (stride == 2) {
-      Double4 turn[8];
-      transpose_columns({moment.x, moment.y, moment.z, Batch(0.0)}, turn);
-      for (std::size_t k = 0; k < 8; ++k) {
-        at(2 * i[k]) -= force[k], at(2 * i[k] + 1) += turn[k] * arm_i[k];
-        at(2 * j[k]) += force[k], at(2 * j[k] + 1) += turn[k] * arm_j[k];
-      }
-    } else {
-      for (std::size_t k = 0; k < 8; ++k) at(i[k]) -= force[k], at(j[k]) += force[k];
-    }
+    for (std::size_t k = 0; k < 8; ++k) at(i[k]) -= force[k], at(j[k]) += force[k];
   }
 }
 

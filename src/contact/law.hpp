@@ -19,18 +19,19 @@ struct Strain {
 /// What a law may know of the two bodies' sizes.
 template <class S>
 struct Sizes {
-  S r_star;   ///< R* = R1 R2/(R1 + R2) [m]; against a wall R
+  S product;  ///< R1 R2 [m²]; against a wall R², so that R* = product/length there too
   S smaller;  ///< min(R1, R2) [m]; against a wall R
   S length;   ///< L = R1 + R2 [m]; against a wall R
+
+  EG_INLINE S r_star() const { return product * reciprocal(length); }  ///< R* = R1 R2/(R1 + R2) [m]
 };
 template <class S>
 EG_INLINE Sizes<S> grain_sizes(const S& ri, const S& rj) {
-  const S sum = ri + rj;
-  return {ri * rj * reciprocal(sum), min(ri, rj), sum};
+  return {ri * rj, min(ri, rj), ri + rj};
 }
 template <class S>
 EG_INLINE Sizes<S> wall_sizes(const S& r) {
-  return {r, r, r};
+  return {r * r, r, r};
 }
 
 /// Response normal to the contact plane.

@@ -60,7 +60,7 @@ class ForceLoopOf final : public ForceLoop {
   /// What the law needs of eight (or one) contacts, and what it gives back.
   template <class S>
   struct Incoming {
-    Vec<S> branch, velocity, turn, roll;
+    Vec<S> branch, velocity, spin_i, spin_j;
     S ri, sum, inverse_mass;
   };
   template <class S>
@@ -121,8 +121,8 @@ class ForceLoopOf final : public ForceLoop {
     in.branch = xyz(x), in.sum = x.w, in.ri = load_w<S>(g.position.data(), i);
     in.velocity = xyz(v), in.inverse_mass = v.w;
     if constexpr (rotation) {
-      in.turn = xyz(load_sum<S>(g.spin.data(), i, j));
-      in.roll = xyz(load_weighted_sum<S>(g.spin.data(), g.position.data(), i, j));
+      in.spin_i = xyz(load_rows<S>(g.spin.data(), i));
+      in.spin_j = xyz(load_rows<S>(g.spin.data(), j));
     }
   }
 
@@ -135,7 +135,10 @@ class ForceLoopOf final : public ForceLoop {
     const auto touching = (g.overlap > S(0.0)) & (dot(in.branch, in.branch) > S(0.0));  // padding has branch 0
     Motion<S> motion;
     motion.translation = (in.velocity + affine * in.branch) * S(dt);
-    if constexpr (rotation) motion.turn = in.turn * S(dt), motion.roll = in.roll * S(dt);
+    if constexpr (rotation) {
+      motion.turn = (in.spin_i + in.spin_j) * S(dt);
+      motion.roll = in.spin_i * (in.ri * S(dt)) + in.spin_j * (rj * S(dt));
+    }
     const auto inc = increment<rotation>(g, motion);
 
     ContactHistory<Law, S> history;
