@@ -136,21 +136,32 @@ struct QuadColumns {
   Batch x, y, z, w;
 };
 
-EG_INLINE Double8 join(Double4 a, Double4 b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7); }
+/// Two rows side by side.
+EG_INLINE Double8 join(const Double4& a, const Double4& b) {
+#if defined(__AVX512F__)  // g++ makes two instructions more of the shuffle
+  return Double8(_mm512_insertf64x4(_mm512_castpd256_pd512(a), b, 1));
+#else
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+#endif
+}
 
-/// Transposes eight 4-double rows. `r` are the rows of lanes 0…7.
-EG_INLINE QuadColumns transpose_rows(Double4 r0, Double4 r1, Double4 r2, Double4 r3, Double4 r4, Double4 r5, Double4 r6,
-                                     Double4 r7) {
-  // Each 128-bit part of t holds two components of one lane; order of lanes restored by the second shuffle.
-  const Double8 t0 = join(r0, r4), t1 = join(r1, r5), t2 = join(r2, r6), t3 = join(r3, r7);
-  const Double8 a = __builtin_shufflevector(t0, t1, 0, 8, 2, 10, 4, 12, 6, 14);  // x0 x1 z0 z1 | x4 x5 z4 z5
-  const Double8 b = __builtin_shufflevector(t0, t1, 1, 9, 3, 11, 5, 13, 7, 15);  // y0 y1 w0 w1 | …
-  const Double8 c = __builtin_shufflevector(t2, t3, 0, 8, 2, 10, 4, 12, 6, 14);  // x2 x3 z2 z3 | …
-  const Double8 d = __builtin_shufflevector(t2, t3, 1, 9, 3, 11, 5, 13, 7, 15);
+/// Transposes eight 4-double rows; t[k] holds the rows of lanes k and k + 4 side by side.
+EG_INLINE QuadColumns transpose_rows(const Double8 (&t)[4]) {
+  // Each 128-bit part holds two components of one lane; order of lanes restored by the second shuffle.
+  const Double8 a = __builtin_shufflevector(t[0], t[1], 0, 8, 2, 10, 4, 12, 6, 14);  // x0 x1 z0 z1 | x4 x5 z4 z5
+  const Double8 b = __builtin_shufflevector(t[0], t[1], 1, 9, 3, 11, 5, 13, 7, 15);  // y0 y1 w0 w1 | …
+  const Double8 c = __builtin_shufflevector(t[2], t[3], 0, 8, 2, 10, 4, 12, 6, 14);  // x2 x3 z2 z3 | …
+  const Double8 d = __builtin_shufflevector(t[2], t[3], 1, 9, 3, 11, 5, 13, 7, 15);
   return {__builtin_shufflevector(a, c, 0, 1, 8, 9, 4, 5, 12, 13),
           __builtin_shufflevector(b, d, 0, 1, 8, 9, 4, 5, 12, 13),
           __builtin_shufflevector(a, c, 2, 3, 10, 11, 6, 7, 14, 15),
           __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15)};
+}
+/// The last column alone.
+EG_INLINE Batch transpose_w(const Double8 (&t)[4]) {
+  const Double8 b = __builtin_shufflevector(t[0], t[1], 1, 9, 3, 11, 5, 13, 7, 15);
+  const Double8 d = __builtin_shufflevector(t[2], t[3], 1, 9, 3, 11, 5, 13, 7, 15);
+  return __builtin_shufflevector(b, d, 2, 3, 10, 11, 6, 7, 14, 15);
 }
 
 /// The inverse: columns back into eight rows.
@@ -167,6 +178,15 @@ EG_INLINE void transpose_columns(const QuadColumns& q, Double4 (&r)[8]) {
   r[1] = __builtin_shufflevector(p1, p1, 0, 1, 2, 3), r[5] = __builtin_shufflevector(p1, p1, 4, 5, 6, 7);
   r[2] = __builtin_shufflevector(p2, p2, 0, 1, 2, 3), r[6] = __builtin_shufflevector(p2, p2, 4, 5, 6, 7);
   r[3] = __builtin_shufflevector(p3, p3, 0, 1, 2, 3), r[7] = __builtin_shufflevector(p3, p3, 4, 5, 6, 7);
+}
+
+/// s in the first half, t in the second.
+EG_INLINE Double8 halves(double s, const double& t) {
+#if defined(__AVX512F__)
+  return Double8(_mm512_mask_broadcastsd_pd(_mm512_set1_pd(s), 0xf0, _mm_load_sd(&t)));
+#else
+  return Double8{s, s, s, s, t, t, t, t};
+#endif
 }
 
 /// Two sets of columns side by side: row k holds lane k of p and behind it lane k of q.

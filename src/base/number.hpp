@@ -45,15 +45,17 @@ EG_INLINE S root_of_ratio(const S& a, const S& b) {
   return sqrt(a / b);
 }
 
-/// √(a/b) of nearly equal a, b ≥ 0 (1 when a = 0): for batches by a series in e = (a − b)/a, exact to round-off for
-/// |e| < 1e-4.
-EG_INLINE Batch root_of_near(Batch a, Batch b) {
-  const Batch e = (a - b) * rough_reciprocal(max(a, Batch(1e-300)));
+/// 1/√(1 − e): for batches by a series, exact to round-off for |e| < 1e-4.
+EG_INLINE Batch rsqrt_near_one(Batch e) {
   return Batch(1.0) + e * (Batch(0.5) + e * (Batch(0.375) + e * Batch(0.3125)));
 }
 template <class S>
-EG_INLINE S root_of_near(const S& a, const S& b) {
-  return a * rsqrt(max(a * b, S(1e-300)));
+EG_INLINE S rsqrt_near_one(const S& e) {
+  return rsqrt(max(S(1.0) - e, S(1e-300)));
+}
+template <class S>
+EG_INLINE S rough_reciprocal(const S& a) {
+  return S(1.0) / a;
 }
 
 template <class S>

@@ -11,24 +11,25 @@ struct Columns {
   S x, y, z, w;
 };
 
+EG_INLINE const double* lanes_at(const Batch& b) { return reinterpret_cast<const double*>(&b); }
 EG_INLINE Double4 quad_vector(const Quad& q) { return *reinterpret_cast<const Double4*>(&q); }
 
-/// Combines rows of both sides of a contact before they are transposed, which is what costs.
-/// Differences (j + shift[image] − i) of x, y, z and the sum of w.
+/// Rows a and b side by side.
+EG_INLINE Double8 row_pair(const Quad* rows, std::size_t a, std::size_t b) {
+  return join(quad_vector(rows[a]), quad_vector(rows[b]));
+}
+
+/// Differences (j − i) of x, y, z and the sum of w: combined before they are transposed, which is what costs.
 template <class S>
-EG_INLINE Columns<S> load_difference(const Quad* rows, const Index* i, const Index* j, const Quad* shift = nullptr,
-                                     const std::uint8_t* image = nullptr) {
+EG_INLINE Columns<S> load_difference(const Quad* rows, const Index* i, const Index* j) {
   if constexpr (lanes_of<S> == 1) {
-    const Quad &a = rows[i[0]], &b = rows[j[0]];
-    const Vec3 d = (shift ? b.vec() + shift[image[0]].vec() : b.vec()) - a.vec();
-    return {d.x, d.y, d.z, b.w + a.w};
+    const Vec3 d = rows[j[0]].vec() - rows[i[0]].vec();
+    return {d.x, d.y, d.z, rows[j[0]].w + rows[i[0]].w};
   } else {
-    const Double4 sign{-1, -1, -1, 1};
-    const auto row = [&](std::size_t k) {
-      const Double4 a = quad_vector(rows[i[k]]), b = quad_vector(rows[j[k]]);
-      return (shift ? b + quad_vector(shift[image[k]]) : b) + sign * a;
-    };
-    const auto c = transpose_rows(row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7));
+    const Double8 sign{-1, -1, -1, 1, -1, -1, -1, 1};
+    Double8 t[4];
+    for (std::size_t k = 0; k < 4; ++k) t[k] = row_pair(rows, j[k], j[k + 4]) + sign * row_pair(rows, i[k], i[k + 4]);
+    const auto c = transpose_rows(t);
     return {c.x, c.y, c.z, c.w};
   }
 }
@@ -40,20 +41,50 @@ EG_INLINE Columns<S> load_rows(const Quad* rows, const Index* index) {
     const Quad& q = rows[index[0]];
     return {q.x, q.y, q.z, q.w};
   } else {
-    const auto row = [&](std::size_t k) { return quad_vector(rows[index[k]]); };
-    const auto c = transpose_rows(row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7));
+    Double8 t[4];
+    for (std::size_t k = 0; k < 4; ++k) t[k] = row_pair(rows, index[k], index[k + 4]);
+    const auto c = transpose_rows(t);
     return {c.x, c.y, c.z, c.w};
   }
 }
 
-/// w of rows index[0…lanes).
+/// Position, velocity and spin of both sides of a contact.
 template <class S>
-EG_INLINE S load_w(const Quad* rows, const Index* index) {
+struct BothSides {
+  Columns<S> branch;    ///< x_j + shift[image] − x_i; w = R_i + R_j
+  Columns<S> velocity;  ///< v_j − v_i; w = 1/m_i + 1/m_j
+  Columns<S> spin_i, spin_j;
+  S radius_i;
+};
+
+/// `image` null: no shifts. All rows of one lane are read together, so that its place is worked out once.
+template <bool rotation, class S>
+EG_INLINE void load_sides(BothSides<S>& out, const Quad* position, const Quad* velocity, const Quad* spin,
+                          const Index* i, const Index* j, const Quad* shift, const std::uint8_t* image) {
   if constexpr (lanes_of<S> == 1) {
-    return rows[index[0]].w;
+    out.branch = load_difference<S>(position, i, j), out.velocity = load_difference<S>(velocity, i, j);
+    out.radius_i = position[i[0]].w;
+    if (image) {
+      const Quad& s = shift[image[0]];
+      out.branch.x += s.x, out.branch.y += s.y, out.branch.z += s.z;
+    }
+    if constexpr (rotation) out.spin_i = load_rows<S>(spin, i), out.spin_j = load_rows<S>(spin, j);
   } else {
-    const auto w = [&](std::size_t k) { return rows[index[k]].w; };
-    return Double8{w(0), w(1), w(2), w(3), w(4), w(5), w(6), w(7)};
+    const Double8 sign{-1, -1, -1, 1, -1, -1, -1, 1};
+    Double8 x[4], xi[4], v[4], wi[4], wj[4];
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::size_t ia = i[k], ib = i[k + 4], ja = j[k], jb = j[k + 4];
+      xi[k] = row_pair(position, ia, ib);
+      x[k] = row_pair(position, ja, jb) + sign * xi[k];
+      v[k] = row_pair(velocity, ja, jb) + sign * row_pair(velocity, ia, ib);
+      if constexpr (rotation) wi[k] = row_pair(spin, ia, ib), wj[k] = row_pair(spin, ja, jb);
+    }
+    if (image)
+      for (std::size_t k = 0; k < 4; ++k) x[k] += row_pair(shift, image[k], image[k + 4]);
+    const auto put = [](Columns<S>& to, const QuadColumns& c) { to.x = c.x, to.y = c.y, to.z = c.z, to.w = c.w; };
+    put(out.branch, transpose_rows(x)), put(out.velocity, transpose_rows(v));
+    out.radius_i = transpose_w(xi);
+    if constexpr (rotation) put(out.spin_i, transpose_rows(wi)), put(out.spin_j, transpose_rows(wj));
   }
 }
 
@@ -71,9 +102,8 @@ EG_INLINE void add_contact(Quad* rows, const Index* i, const Index* j, const Vec
     Double8 row[8];
     transpose_columns({f.x, f.y, f.z, Batch(0.0)}, {moment.x, moment.y, moment.z, Batch(0.0)}, row);
     for (std::size_t k = 0; k < 8; ++k) {
-      const double ai = arm_i[k], aj = arm_j[k];
-      at(i[k]) += row[k] * Double8{-1, -1, -1, -1, ai, ai, ai, ai};
-      at(j[k]) += row[k] * Double8{1, 1, 1, 1, aj, aj, aj, aj};
+      at(i[k]) += row[k] * halves(-1, lanes_at(arm_i)[k]);
+      at(j[k]) += row[k] * halves(1, lanes_at(arm_j)[k]);
     }
   } else {
     const auto at = [rows](std::size_t k) -> Double4& { return *reinterpret_cast<Double4*>(rows + k); };

@@ -57,12 +57,7 @@ class ForceLoopOf final : public ForceLoop {
     S force = S(0.0), touching = S(0.0), stiffness = S(0.0), shear_work = S(0.0), friction = S(0.0), viscous = S(0.0);
   };
 
-  /// What the law needs of eight (or one) contacts, and what it gives back.
-  template <class S>
-  struct Incoming {
-    Vec<S> branch, velocity, spin_i, spin_j;
-    S ri, sum, inverse_mass;
-  };
+  /// What the law gives back for eight (or one) contacts.
   template <class S>
   struct Outgoing {
     Vec<S> force, moment;
@@ -81,9 +76,12 @@ class ForceLoopOf final : public ForceLoop {
     std::fill(rows + stride * work.schedule.halo_begin[k], rows + stride * work.schedule.halo_begin[k + 1], Quad{});
     const Index* target = work.schedule.target.data();
     const bool prefetch = state.grains.size() > 20000;  // fewer stay in the second-level cache by themselves
+    const bool images = !list.image.empty();
+    const Grains& g = state.grains;
+    const auto uniform = broadcast_struct<typename Law::template Constants<S>, S>(constants_.front());
     const Mat<S> affine = broadcast<S>(state.cell.rate);
     Sums<S> sums;
-    std::array<Incoming<S>, block> in;
+    std::array<BothSides<S>, block> in;
     std::array<Outgoing<S>, block> out;
 
     const std::size_t end = list.chunk_begin[k + 1];
@@ -91,9 +89,13 @@ class ForceLoopOf final : public ForceLoop {
       const std::size_t count = std::min(block, (end - c) / lanes);
       if (prefetch && c + block * lanes < end)
         fetch(state, work, c + block * lanes, std::min(end, c + 2 * block * lanes));
-      for (std::size_t b = 0; b < count; ++b) gather<S>(in[b], state, work, c + b * lanes);
+      for (std::size_t b = 0; b < count; ++b) {
+        const std::size_t at = c + b * lanes;
+        load_sides<rotation, S>(in[b], g.position.data(), g.velocity.data(), g.spin.data(), list.i.data() + at,
+                                list.j.data() + at, work.shift.data(), images ? list.image.data() + at : nullptr);
+      }
       for (std::size_t b = 0; b < count; ++b)
-        respond<S, damped>(out[b], in[b], affine, state, c + b * lanes, dt, options, sums);
+        respond<S, damped>(out[b], in[b], affine, uniform, state, c + b * lanes, dt, options, sums);
       for (std::size_t b = 0; b < count; ++b)
         add_contact<stride, S>(rows, list.i.data() + c + b * lanes, target + c + b * lanes, out[b].force, out[b].moment,
                                out[b].arm_i, out[b].arm_j);
@@ -110,34 +112,21 @@ class ForceLoopOf final : public ForceLoop {
     }
   }
 
-  template <class S>
-  EG_INLINE static void gather(Incoming<S>& in, const State& state, const ForceWorkspace& work, std::size_t c) {
-    const auto& g = state.grains;
-    const Index *i = state.contacts.i.data() + c, *j = state.contacts.j.data() + c;
-    const bool images = !state.contacts.image.empty();
-    const auto x = load_difference<S>(g.position.data(), i, j, images ? work.shift.data() : nullptr,
-                                      images ? state.contacts.image.data() + c : nullptr);
-    const auto v = load_difference<S>(g.velocity.data(), i, j);
-    in.branch = xyz(x), in.sum = x.w, in.ri = load_w<S>(g.position.data(), i);
-    in.velocity = xyz(v), in.inverse_mass = v.w;
-    if constexpr (rotation) {
-      in.spin_i = xyz(load_rows<S>(g.spin.data(), i));
-      in.spin_j = xyz(load_rows<S>(g.spin.data(), j));
-    }
-  }
-
   template <class S, bool damped>
-  EG_INLINE void respond(Outgoing<S>& out, const Incoming<S>& in, const Mat<S>& affine, State& state, std::size_t c,
+  EG_INLINE void respond(Outgoing<S>& out, const BothSides<S>& in, const Mat<S>& affine,
+                         const typename Law::template Constants<S>& uniform, State& state, std::size_t c,
                          double dt, const ForceOptions& options, Sums<S>& sums) const {
     Contacts& list = state.contacts;
-    const S rj = in.sum - in.ri;
-    const auto g = grain_grain(in.branch, in.ri, in.sum, options.arms);
-    const auto touching = (g.overlap > S(0.0)) & (dot(in.branch, in.branch) > S(0.0));  // padding has branch 0
+    const Vec<S> branch = xyz(in.branch);
+    const S sum = in.branch.w, ri = in.radius_i, rj = sum - ri, inverse_mass = in.velocity.w;
+    const auto g = grain_grain(branch, ri, sum, options.arms);
+    const auto touching = (g.overlap > S(0.0)) & (dot(branch, branch) > S(0.0));  // padding has branch 0
     Motion<S> motion;
-    motion.translation = (in.velocity + affine * in.branch) * S(dt);
+    motion.translation = (xyz(in.velocity) + affine * branch) * S(dt);
     if constexpr (rotation) {
-      motion.turn = (in.spin_i + in.spin_j) * S(dt);
-      motion.roll = in.spin_i * (in.ri * S(dt)) + in.spin_j * (rj * S(dt));
+      const Vec<S> wi = xyz(in.spin_i), wj = xyz(in.spin_j);
+      motion.turn = (wi + wj) * S(dt);
+      motion.roll = wi * (ri * S(dt)) + wj * (rj * S(dt));
     }
     const auto inc = increment<rotation>(g, motion);
 
@@ -148,26 +137,31 @@ class ForceLoopOf final : public ForceLoop {
     Dashpot<S> dashpot;
     if constexpr (damped)
       dashpot = {S(options.normal_ratio), S(options.shear_ratio),
-                 select(in.inverse_mass > S(0.0), S(1.0) / in.inverse_mass, S(0.0)), S(dt > 0 ? 1 / dt : 0)};
-    const auto pair = Law::template pair<S>(constants<S>(state, c), grain_sizes(in.ri, rj));
+                 select(inverse_mass > S(0.0), S(1.0) / inverse_mass, S(0.0)), S(dt > 0 ? 1 / dt : 0)};
+    const auto pair = Law::template pair<S>(!state.grains.material.empty() ? constants<S>(state, c) : uniform, grain_sizes(ri, rj));
     const ContactForce<S> f = interact<Law, damped>(pair, g, inc, touching, history, dashpot);
     for (std::size_t h = 0; h < history.size(); ++h) store_values(stored + h * Contacts::lanes, history[h]);
-    out.force = f.on_j;
-    if constexpr (rotation) out.moment = f.moment, out.arm_i = g.arm_i, out.arm_j = g.arm_j;
+    put(out.force, f.on_j);
+    if constexpr (rotation) put(out.moment, f.moment), out.arm_i = g.arm_i, out.arm_j = g.arm_j;
 
     if (options.tally == TallyLevel::none) return;
-    add_stress(sums, in.branch, f, touching);
+    add_stress(sums, branch, f, touching);
     if (options.tally == TallyLevel::stress) return;
     add_works(sums, inc, f, touching);
     if (options.viscous_history)
       sums.viscous = sums.viscous + viscous_work(stored + history.size() * Contacts::lanes, Contacts::lanes, g, inc, f);
   }
 
+  /// Component by component: g++ copies the struct in halves, through memory.
+  template <class S>
+  EG_INLINE static void put(Vec<S>& to, const Vec<S>& from) {
+    to.x = from.x, to.y = from.y, to.z = from.z;
+  }
+
   template <class S>
   EG_INLINE typename Law::template Constants<S> constants(const State& state, std::size_t c) const {
     using Out = typename Law::template Constants<S>;
     const auto& material = state.grains.material;
-    if (material.empty()) return broadcast_struct<Out, S>(constants_.front());
     return gather_struct<Out, S>(constants_.data(), [&](std::size_t l) {
       return material[state.contacts.i[c + l]] * kinds_ + material[state.contacts.j[c + l]];
     });
