@@ -95,12 +95,12 @@ void StiffnessOperator::sum(std::size_t chunk) const {
 
 template <int... component>
 void StiffnessOperator::store(std::size_t chunk, double* y) const {
+  for (Index e = schedule_.gather_begin[chunk]; e < schedule_.gather_begin[chunk + 1]; ++e) {
+    Quad *to = &sums_[2 * schedule_.gather_grain[e]], *from = &sums_[2 * schedule_.gather_row[e]];
+    to[0].set(to[0].vec() + from[0].vec()), to[1].set(to[1].vec() + from[1].vec());
+  }
   for (std::size_t g = chunk * chunk_grains; g < std::min(grains_, (chunk + 1) * chunk_grains); ++g) {
-    Vec3 u = sums_[2 * g].vec(), turn = sums_[2 * g + 1].vec();
-    for (Index h = schedule_.gather_begin[g]; h < schedule_.gather_begin[g + 1]; ++h) {
-      const std::size_t row = 2 * schedule_.gather_row[h];
-      u += sums_[row].vec(), turn += sums_[row + 1].vec();
-    }
+    const Vec3 u = sums_[2 * g].vec(), turn = sums_[2 * g + 1].vec();
     const double m = scale_[g], i = turn_scale_[g];
     const double row[6] = {m * u.x, m * u.y, m * u.z, i * turn.x, i * turn.y, i * turn.z};
     double* entry = y + g * sizeof...(component);

@@ -139,6 +139,12 @@ Mat<S> outer(const Vec<S>& a, const Vec<S>& b) {
     for (int j = 0; j < 3; ++j) m(i, j) = a[i] * b[j];
   return m;
 }
+/// Frobenius norm, a bound of the largest stretch.
+inline double norm(const Mat<double>& m) {
+  double sum = 0;
+  for (const double v : m.a) sum += v * v;
+  return std::sqrt(sum);
+}
 template <class S>
 S determinant(const Mat<S>& m) {
   return m(0, 0) * (m(1, 1) * m(2, 2) - m(1, 2) * m(2, 1)) - m(0, 1) * (m(1, 0) * m(2, 2) - m(1, 2) * m(2, 0)) +

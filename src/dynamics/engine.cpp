@@ -61,8 +61,11 @@ void Engine::forces(double dt, TallyLevel tally) {
 
 void Engine::move(TallyLevel tally) {
   const double dt = state_.dt;
-  const double displacement = drift(state_, dt);
-  if (update_lists(state_, displacement)) refresh_workspace();
+  travelled_ += (travelled_ * norm(state_.cell.rate) + drift(state_, dt)) * dt;
+  if (used_skin(state_, travelled_) > 0.999 * state_.list.contact_skin) {  // rounding aside, the bound tells
+    travelled_ = displacement(state_);
+    if (update_lists(state_, travelled_)) refresh_workspace(), travelled_ = 0;
+  }
   forces(dt, scene_.energy ? TallyLevel::works : tally);
   last_dt_ = dt;
   state_.time += dt;

@@ -46,6 +46,7 @@ class Engine {
   KickSums sums_;
   TallyLevel level_ = TallyLevel::none;
   double last_dt_ = 0;
+  double travelled_ = 1e300;  ///< bound of displacement() [m]; the true one is worked out when the bound calls for it
 };
 
 /// Stress from the last step's contacts: virial over volume, compression positive [Pa] (2D: N/m).

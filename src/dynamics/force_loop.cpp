@@ -27,7 +27,8 @@ std::unique_ptr<ForceLoop> make_force_loop(std::string_view law, bool frictionle
 void prepare(ForceWorkspace& work, const State& state, const ForceLoop& loop) {
   make_schedule(work.schedule, state.grains.size(), Contacts::chunk, state.contacts.j, state.contacts.chunk_begin);
   work.stride = loop.has_moments() ? 2 : 1;
-  work.rows.resize(work.schedule.rows() * work.stride);
+  work.rows.assign(work.schedule.rows() * work.stride, Quad{});
+  work.clean = true;
   work.tally.resize(work.schedule.chunks());
   work.shift.resize(Cell::images);
 }
@@ -39,8 +40,8 @@ ForceRow gather_row(const ForceWorkspace& work, std::size_t i) {
     if (work.stride == 2) sum.moment += work.rows[2 * row + 1].vec();
   };
   add(i);
-  for (Index h = work.schedule.gather_begin[i]; h < work.schedule.gather_begin[i + 1]; ++h)
-    add(work.schedule.gather_row[h]);
+  for (std::size_t e = 0; e < work.schedule.gather_row.size(); ++e)
+    if (work.schedule.gather_grain[e] == i) add(work.schedule.gather_row[e]);
   return sum;
 }
 

@@ -22,13 +22,25 @@ struct Tally {
   Tally& operator+=(const Tally& b);
 };
 
-/// Scratch of the force loop: accumulator rows (grains, then halo rows) and their schedule. A row is a force [N], and
+/// Sums over grains of one kick. Works are exact for the discrete motion: F·(c₋ + c₊)/2 dt.
+struct KickSums {
+  double kinetic = 0;  ///< ½ Σ m c₋·c₊ + ½ Σ I ω₋·ω₊ at the time of the forces [J]
+  double local_damping = 0, mass_damping = 0;  ///< dissipated [J]
+  double body = 0;                             ///< work of gravity [J]
+  double affine = 0;                           ///< work of the cell on peculiar motion, −m c·L·c dt [J]
+  double unbalanced = 0;                       ///< Σ |net force| [N] over grains that can move
+  KickSums& operator+=(const KickSums& b);
+};
+
+/// Scratch of the step: accumulator rows (grains, then halo rows) and their schedule. A row is a force [N], and
 /// behind it a moment [N m] when grains turn.
 struct ForceWorkspace {
   Schedule schedule;
   AlignedVector<Quad> rows;
   std::size_t stride = 2;    ///< quads a row: 2 with moments, else 1
+  bool clean = false;        ///< rows are zero: the kick leaves them so, while they are at hand
   std::vector<Tally> tally;  ///< a chunk
+  std::vector<KickSums> kick_sums;
   std::vector<Quad> shift;   ///< translation of each image
 };
 
@@ -70,7 +82,7 @@ struct ForceRow {
   Vec3 force, moment;  ///< [N], [N m]
 };
 
-/// Of grain i: its own row plus its halo rows, in fixed order.
+/// Of grain i, between contacts() and the kick: its own row plus its halo rows, in fixed order. Slow.
 ForceRow gather_row(const ForceWorkspace& work, std::size_t i);
 
 }  // namespace eg

@@ -31,6 +31,8 @@ class ForceLoopOf final : public ForceLoop {
 
   Tally contacts(State& state, ForceWorkspace& work, double dt, const ForceOptions& options) const override {
     const std::size_t chunks = work.schedule.chunks();
+    if (!work.clean) std::fill(work.rows.begin(), work.rows.end(), Quad{});
+    work.clean = false;
     for (std::size_t c = 0; c < Cell::images; ++c) work.shift[c].set(state.cell.shift(static_cast<std::uint8_t>(c)));
 #pragma omp parallel for schedule(static) if (chunks >= Contacts::worth_threads)
     for (std::size_t k = 0; k < chunks; ++k) work.tally[k] = run_chunk(state, work, k, dt, options);
@@ -70,10 +72,7 @@ class ForceLoopOf final : public ForceLoop {
   Tally chunk(State& state, ForceWorkspace& work, std::size_t k, double dt, const ForceOptions& options) const {
     constexpr std::size_t lanes = lanes_of<S>, block = lanes == 1 ? 1 : 8;
     Contacts& list = state.contacts;
-    const std::size_t low = k * Contacts::chunk, high = std::min(state.grains.size(), low + Contacts::chunk);
     Quad* rows = work.rows.data();
-    std::fill(rows + stride * low, rows + stride * high, Quad{});
-    std::fill(rows + stride * work.schedule.halo_begin[k], rows + stride * work.schedule.halo_begin[k + 1], Quad{});
     const Index* target = work.schedule.target.data();
     const bool prefetch = state.grains.size() > 20000;  // fewer stay in the second-level cache by themselves
     const bool images = !list.image.empty();

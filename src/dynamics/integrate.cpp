@@ -11,81 +11,112 @@ constexpr std::size_t chunk = Contacts::chunk;
 std::size_t chunks_of(std::size_t n) { return (n + chunk - 1) / chunk; }
 
 Double4& vector(Quad& q) { return *reinterpret_cast<Double4*>(&q); }
-const Double4& vector(const Quad& q) { return *reinterpret_cast<const Double4*>(&q); }
-double dot3(Double4 a, Double4 b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+// A row is one quad (velocity), or two side by side (velocity | spin): V is Double4 or Double8.
+EG_INLINE Double4 spread(Double4 v, std::integral_constant<int, 0>) { return __builtin_shufflevector(v, v, 0, 0, 0, 0); }
+EG_INLINE Double4 spread(Double4 v, std::integral_constant<int, 1>) { return __builtin_shufflevector(v, v, 1, 1, 1, 1); }
+EG_INLINE Double4 spread(Double4 v, std::integral_constant<int, 2>) { return __builtin_shufflevector(v, v, 2, 2, 2, 2); }
+EG_INLINE Double4 spread(Double4 v, std::integral_constant<int, 3>) { return __builtin_shufflevector(v, v, 3, 3, 3, 3); }
+template <int k>
+EG_INLINE Double8 spread(Double8 v, std::integral_constant<int, k>) {
+  return __builtin_shufflevector(v, v, k, k, k, k, k + 4, k + 4, k + 4, k + 4);
+}
+template <int k, class V>
+EG_INLINE V spread(V v) {
+  return spread(v, std::integral_constant<int, k>{});
+}
+EG_INLINE double total(Double4 v) { return v[0] + v[1] + v[2]; }
+EG_INLINE double total(Double8 v) { return (v[0] + v[1] + v[2]) + (v[4] + v[5] + v[6]); }
+
+template <class V>
+EG_INLINE V row_of(double x, double y, double z) {
+  V v{};
+  v[0] = x, v[1] = y, v[2] = z;
+  return v;
+}
+
+/// Columns of L for the velocity half of a row; zero for the spin half.
+template <class V>
+struct Affine {
+  V x, y, z;
+  explicit Affine(const Mat3& m)
+      : x(row_of<V>(m(0, 0), m(1, 0), m(2, 0))),
+        y(row_of<V>(m(0, 1), m(1, 1), m(2, 1))),
+        z(row_of<V>(m(0, 2), m(1, 2), m(2, 2))) {}
+  EG_INLINE V operator*(V v) const { return x * spread<0>(v) + y * spread<1>(v) + z * spread<2>(v); }
+};
 
 /// −α|F| sign(v), sign(0) = 0 (Cundall 1987).
-EG_INLINE Double4 local_force(Double4 f, Double4 v, double alpha) {
-  const Double4 size = f < 0.0 ? -f : f;
-  const Double4 against = v > 0.0 ? -size : size;
-  return (v == 0.0 ? Double4{} : against) * alpha;
+template <class V>
+EG_INLINE V local_force(V f, V v, double alpha) {
+  const V size = f < 0.0 ? -f : f;
+  const V against = v > 0.0 ? -size : size;
+  return (v == 0.0 ? V{} : against) * alpha;
 }
 
-/// Row i plus its halo rows, quad by quad.
-EG_INLINE Double4 gather_quad(const ForceWorkspace& work, std::size_t i, std::size_t offset) {
-  const Schedule& s = work.schedule;
-  Double4 sum = vector(work.rows[i * work.stride + offset]);
-  for (Index h = s.gather_begin[i]; h < s.gather_begin[i + 1]; ++h)
-    sum += vector(work.rows[s.gather_row[h] * work.stride + offset]);
-  return sum;
-}
-
-struct Columns4 {
-  Double4 x, y, z;
-};
-Columns4 columns(const Mat3& m) {
-  return {Double4{m(0, 0), m(1, 0), m(2, 0), 0}, Double4{m(0, 1), m(1, 1), m(2, 1), 0},
-          Double4{m(0, 2), m(1, 2), m(2, 2), 0}};
-}
-EG_INLINE Double4 times(const Columns4& m, Double4 v) { return m.x * v[0] + m.y * v[1] + m.z * v[2]; }
-
-/// Leaves w (inverse mass or inertia) as it is.
-EG_INLINE void move3(Double4& q, Double4 change) {
-  change[3] = 0;
-  q += change;
-}
-
-/// One grain: c or ω by its force or moment. `works` adds up energies.
-template <bool works>
-EG_INLINE void kick_one(Double4& velocity, Double4 force, double dt, double local, double drag, const Columns4* affine,
-                        Double4 gravity, KickSums& sums) {
-  const double inverse = velocity[3];
-  if (!(inverse > 0)) return;
-  const Double4 before = velocity;
-  Double4 rate = force * inverse + gravity;  // acceleration by contacts and weight
-  const Double4 damping = local > 0 ? local_force(rate, before, local) : Double4{};
-  Double4 rest = before * -drag;
-  if (affine) rest -= times(*affine, before);
-  move3(velocity, (rate + damping + rest) * dt);
+/// c and ω of one grain by its force and moment. `works` adds up energies.
+template <bool works, class V>
+EG_INLINE V kicked(V before, V force, double dt, const KickOptions& options, const Affine<V>& affine, V gravity,
+                   KickSums& sums) {
+  const V inverse = spread<3>(before);
+  const V rate = force * inverse + gravity;  // acceleration by contacts and weight
+  const V damping = options.local > 0 ? local_force(rate, before, options.local) : V{};
+  const V bent = affine * before;
+  V change = (rate + damping - before * options.mass - bent) * dt;
+  change = inverse > 0.0 ? change : V{};  // fixed grains
+  change[3] = 0;                          // 1/m and 1/I stay
+  if constexpr (sizeof(V) == sizeof(Double8)) change[7] = 0;
+  const V after = before + change;
   if constexpr (works) {
-    const double mass = 1 / inverse;
-    const Double4 path = (before + velocity) * (0.5 * dt * mass);  // times acceleration: work
-    sums.kinetic += 0.5 * mass * dot3(before, velocity);
-    sums.local_damping -= dot3(damping, path), sums.mass_damping += drag * dot3(before, path);
-    sums.body += dot3(gravity, path);
-    if (affine) {  // a velocity, not a spin
-      sums.affine -= dot3(times(*affine, before), path);
-      sums.unbalanced += mass * std::sqrt(dot3(rate, rate));
-    }
+    const V mass = inverse > 0.0 ? 1.0 / inverse : V{};
+    const V path = (before + after) * (0.5 * dt) * mass;  // times acceleration: work
+    sums.kinetic += total(0.5 * mass * before * after);
+    sums.local_damping -= total(damping * path), sums.mass_damping += options.mass * total(before * path);
+    sums.body += total(gravity * path), sums.affine -= total(bent * path);
+    sums.unbalanced += mass[0] * std::sqrt(rate[0] * rate[0] + rate[1] * rate[1] + rate[2] * rate[2]);
   }
+  return after;
 }
 
-template <bool works>
-KickSums kick_chunk(State& state, const ForceWorkspace& work, std::size_t low, std::size_t high, double dt,
-                    const KickOptions& options) {
+template <bool works, class V>
+KickSums kick_chunk(State& state, ForceWorkspace& work, std::size_t k, double dt, const KickOptions& options) {
+  constexpr bool turning = sizeof(V) == sizeof(Double8);
   auto& g = state.grains;
-  const Columns4 affine = columns(state.cell.rate);
-  const Double4 gravity{options.gravity.x, options.gravity.y, options.gravity.z, 0};
-  const bool moments = g.rotates() && work.stride == 2;
+  const std::size_t low = k * chunk, high = std::min(g.size(), low + chunk);
+  const auto row = [&](std::size_t r) -> V& { return *reinterpret_cast<V*>(&work.rows[r * (sizeof(V) / sizeof(Quad))]); };
+  const Schedule& s = work.schedule;
+  for (Index e = s.gather_begin[k]; e < s.gather_begin[k + 1]; ++e) {
+    row(s.gather_grain[e]) += row(s.gather_row[e]);
+    row(s.gather_row[e]) = V{};
+  }
+  const Affine<V> affine(state.cell.rate);
+  const V gravity = row_of<V>(options.gravity.x, options.gravity.y, options.gravity.z);
   KickSums sums;
   for (std::size_t i = low; i < high; ++i) {
-    kick_one<works>(vector(g.velocity[i]), gather_quad(work, i, 0), dt, options.local, options.mass, &affine, gravity,
-                    sums);
-    if (moments)
-      kick_one<works>(vector(g.spin[i]), gather_quad(work, i, 1), dt, options.local, options.mass, nullptr, Double4{},
-                      sums);
+    if constexpr (turning) {
+      const V after = kicked<works, V>(join(vector(g.velocity[i]), vector(g.spin[i])), row(i), dt, options, affine,
+                                       gravity, sums);
+      vector(g.velocity[i]) = __builtin_shufflevector(after, after, 0, 1, 2, 3);
+      vector(g.spin[i]) = __builtin_shufflevector(after, after, 4, 5, 6, 7);
+    } else {
+      vector(g.velocity[i]) = kicked<works, V>(vector(g.velocity[i]), row(i), dt, options, affine, gravity, sums);
+    }
+    row(i) = V{};
   }
   return sums;
+}
+
+template <class V>
+KickSums kick_rows(State& state, ForceWorkspace& work, double dt, const KickOptions& options, bool works) {
+  const std::size_t chunks = work.schedule.chunks();
+  work.kick_sums.resize(chunks);
+#pragma omp parallel for schedule(static) if (chunks >= Contacts::worth_threads)
+  for (std::size_t k = 0; k < chunks; ++k)
+    work.kick_sums[k] = works ? kick_chunk<true, V>(state, work, k, dt, options)
+                              : kick_chunk<false, V>(state, work, k, dt, options);
+  KickSums total;
+  for (const auto& s : work.kick_sums) total += s;
+  return total;
 }
 
 }  // namespace
@@ -98,42 +129,47 @@ KickSums& KickSums::operator+=(const KickSums& b) {
 
 double drift(State& state, double dt) {
   auto& g = state.grains;
-  const Columns4 l = columns(state.cell.rate);
+  const Affine<Double4> l(state.cell.rate);
   state.cell.deform(dt);
   state.cell.origin += (state.cell.rate * state.cell.origin) * dt;
-  const Columns4 f = columns(state.cell.h * inverse(state.list.reference_cell));
-  std::vector<double> largest(chunks_of(g.size()), 0.0);
-#pragma omp parallel for schedule(static) if (largest.size() >= Contacts::worth_threads)
-  for (std::size_t k = 0; k < largest.size(); ++k) {
-    double most = 0;
+  const std::size_t chunks = chunks_of(g.size());
+  double fastest = 0;
+#pragma omp parallel for schedule(static) reduction(max : fastest) if (chunks >= Contacts::worth_threads)
+  for (std::size_t k = 0; k < chunks; ++k) {
+    Double4 most{};  // of each component: their sum is a bound
     for (std::size_t i = k * chunk; i < std::min(g.size(), (k + 1) * chunk); ++i) {
       Double4& x = vector(g.position[i]);
-      move3(x, (vector(g.velocity[i]) + times(l, x)) * dt);
-      const Vec3& start = state.list.reference[i];
-      const Double4 u = x - (f.x * start.x + f.y * start.y + f.z * start.z);
-      most = std::max(most, dot3(u, u));
+      const Double4 v = vector(g.velocity[i]), square = v * v;
+      Double4 change = (v + l * x) * dt;
+      change[3] = 0;
+      x += change;
+      most = square > most ? square : most;
     }
-    largest[k] = most;
+    fastest = std::max(fastest, std::sqrt(total(most)));
   }
   for (auto& w : state.walls) {
     w.point += w.velocity * dt;
     w.moved += std::abs(dot(w.velocity, w.normal)) * dt;
   }
-  return largest.empty() ? 0.0 : std::sqrt(*std::max_element(largest.begin(), largest.end()));
+  return fastest;
 }
 
-KickSums kick(State& state, const ForceWorkspace& work, double dt, const KickOptions& options, bool works) {
-  const std::size_t n = state.grains.size();
-  std::vector<KickSums> sums(chunks_of(n));
-#pragma omp parallel for schedule(static) if (sums.size() >= Contacts::worth_threads)
-  for (std::size_t k = 0; k < sums.size(); ++k) {
-    const std::size_t low = k * chunk, high = std::min(n, low + chunk);
-    sums[k] = works ? kick_chunk<true>(state, work, low, high, dt, options)
-                    : kick_chunk<false>(state, work, low, high, dt, options);
+double displacement(const State& state) {
+  const auto& x = state.grains.position;
+  const Mat3 f = state.cell.h * inverse(state.list.reference_cell);
+  double most = 0;
+#pragma omp parallel for schedule(static) reduction(max : most) if (chunks_of(x.size()) >= Contacts::worth_threads)
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Vec3 u = x[i].vec() - f * state.list.reference[i];
+    most = std::max(most, dot(u, u));
   }
-  KickSums total;
-  for (const auto& s : sums) total += s;
-  return total;
+  return std::sqrt(most);
+}
+
+KickSums kick(State& state, ForceWorkspace& work, double dt, const KickOptions& options, bool works) {
+  work.clean = true;
+  return work.stride == 2 ? kick_rows<Double8>(state, work, dt, options, works)
+                          : kick_rows<Double4>(state, work, dt, options, works);
 }
 
 }  // namespace eg

@@ -10,22 +10,14 @@ struct KickOptions {
   int dimension = 3;
 };
 
-/// Sums over grains of one kick. Works are exact for the discrete motion: F·(c₋ + c₊)/2 dt.
-struct KickSums {
-  double kinetic = 0;  ///< ½ Σ m c₋·c₊ + ½ Σ I ω₋·ω₊ at the time of the forces [J]
-  double local_damping = 0, mass_damping = 0;  ///< dissipated [J]
-  double body = 0;                             ///< work of gravity [J]
-  double affine = 0;                           ///< work of the cell on peculiar motion, −m c·L·c dt [J]
-  double unbalanced = 0;                       ///< Σ |net force| [N] over grains that can move
-  KickSums& operator+=(const KickSums& b);
-};
-
-/// x ← x + dt (c + L x), cell and walls with it. Returns the largest peculiar displacement since contacts were
-/// refreshed [m].
+/// x ← x + dt (c + L x), cell and walls with it. Returns a bound of the largest peculiar velocity [m/s].
 double drift(State& state, double dt);
 
+/// Largest peculiar displacement since contacts were refreshed [m].
+double displacement(const State& state);
+
 /// c ← c + dt (F/m + g − L c) with damping, ω likewise; dt is the span between the half steps on both sides.
-/// The sums are made only with `works`.
-KickSums kick(State& state, const ForceWorkspace& work, double dt, const KickOptions& options, bool works);
+/// The sums are made only with `works`. Uses up the forces: rows of the workspace are zero afterwards.
+KickSums kick(State& state, ForceWorkspace& work, double dt, const KickOptions& options, bool works);
 
 }  // namespace eg

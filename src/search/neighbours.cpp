@@ -190,11 +190,9 @@ void rebuild_neighbours(State& state, double skin, double contact_skin) {
 
 double used_skin(const State& state, double displacement) {
   const Mat3 strain = state.cell.h * inverse(state.list.reference_cell) - Mat3::identity();
-  double norm2 = 0;
-  for (const double e : strain.a) norm2 += e * e;
   double walls = 0;
   for (const auto& w : state.walls) walls = std::max(walls, w.moved);
-  return 2 * displacement + std::sqrt(norm2) * state.list.longest + walls;
+  return 2 * displacement + norm(strain) * state.list.longest + walls;
 }
 
 bool update_lists(State& state, double displacement) {

@@ -28,12 +28,17 @@ void make_schedule(Schedule& out, std::size_t grains, std::size_t chunk, std::sp
     out.halo_begin.push_back(static_cast<Index>(grains + owner.size()));
   }
 
-  out.gather_begin.assign(grains + 1, 0);  // counting sort of halo rows by their grain
-  for (const Index grain : owner) ++out.gather_begin[grain + 1];
-  for (std::size_t i = 0; i < grains; ++i) out.gather_begin[i + 1] += out.gather_begin[i];
-  out.gather_row.resize(owner.size());
-  auto next = out.gather_begin;
-  for (std::size_t h = 0; h < owner.size(); ++h) out.gather_row[next[owner[h]]++] = static_cast<Index>(grains + h);
+  std::vector<Index> next(grains + 1, 0);  // counting sort of halo rows by their grain
+  for (const Index grain : owner) ++next[grain + 1];
+  for (std::size_t i = 0; i < grains; ++i) next[i + 1] += next[i];
+  out.gather_begin.clear();
+  for (std::size_t k = 0; k < chunks; ++k) out.gather_begin.push_back(next[std::min(grains, k * chunk)]);
+  out.gather_begin.push_back(static_cast<Index>(owner.size()));
+  out.gather_row.resize(owner.size()), out.gather_grain.resize(owner.size());
+  for (std::size_t h = 0; h < owner.size(); ++h) {
+    const Index at = next[owner[h]]++;
+    out.gather_row[at] = static_cast<Index>(grains + h), out.gather_grain[at] = owner[h];
+  }
 }
 
 }  // namespace eg

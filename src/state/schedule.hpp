@@ -13,7 +13,8 @@ namespace eg {
 struct Schedule {
   std::vector<Index> target;        ///< accumulator row of side j, one a pair; side i's row is i itself
   std::vector<Index> halo_begin;    ///< halo rows of chunk k: [halo_begin[k], halo_begin[k+1])
-  std::vector<Index> gather_begin;  ///< halo rows to add to grain i: gather_row[gather_begin[i] … gather_begin[i+1])
+  std::vector<Index> gather_begin;  ///< entries of chunk k: [gather_begin[k], gather_begin[k+1]), sorted by grain
+  std::vector<Index> gather_grain;  ///< grain of an entry, and the halo row to add to it
   std::vector<Index> gather_row;
   std::size_t grains = 0;
 
