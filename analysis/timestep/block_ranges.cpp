@@ -144,7 +144,8 @@ EG_INLINE void eight_ranges(const Sides& sides, std::span<const double> t, std::
   const auto* quads = reinterpret_cast<const Double4*>(sums.data());
   for (std::size_t q = 0; q < 4; ++q) {
     const auto row = [&](std::size_t k) { return quads[4 * k + q]; };
-    const auto columns = transpose_rows(row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7));
+    const auto columns =
+        transpose_rows({join(row(0), row(4)), join(row(1), row(5)), join(row(2), row(6)), join(row(3), row(7))});
     s[4 * q] = columns.x, s[4 * q + 1] = columns.y, s[4 * q + 2] = columns.z, s[4 * q + 3] = columns.w;
   }
   std::array<Batch, 6> d;

@@ -39,15 +39,20 @@ void Engine::set_friction(const std::vector<double>& friction) {
   loop_->set_materials(scene_.materials, friction, scene_.dimension);
 }
 
-void Engine::forces(double dt, TallyLevel tally) {
+void Engine::forces(double dt, TallyLevel tally) { forces(dt, tally, {}); }
+
+void Engine::forces(double dt, TallyLevel tally, const AfterChunk& after) {
   options_.tally = level_ = tally;
   const Mat3 virial_before = state_.virial;
   double wall_power = 0;
   for (const auto& w : state_.walls) wall_power -= 0.5 * dot(w.force, w.velocity);
-  Tally now = loop_->contacts(state_, work_, dt, options_);
-  const Mat3 virial = now.virial;
-  if (!state_.walls.empty()) now += loop_->walls(state_, work_, dt, options_);
+  work_.clear();
+  Tally now;
+  if (!state_.walls.empty()) now = loop_->walls(state_, work_, dt, options_);
+  const Tally grains = loop_->contacts(state_, work_, dt, options_, after);
   if (tally == TallyLevel::none) return;
+  const Mat3 virial = grains.virial;
+  now += grains;
   if (tally == TallyLevel::works) tally_ = now;
   state_.virial = virial;
   state_.stiffness_sum = now.stiffness_sum;
@@ -59,21 +64,37 @@ void Engine::forces(double dt, TallyLevel tally) {
   e.boundary += wall_power * dt;
 }
 
-void Engine::move(TallyLevel tally) {
+void Engine::drift() {
   const double dt = state_.dt;
-  travelled_ += (travelled_ * norm(state_.cell.rate) + drift(state_, dt)) * dt;
+  travelled_ += (travelled_ * norm(state_.cell.rate) + eg::drift(state_, dt)) * dt;
   if (used_skin(state_, travelled_) > 0.999 * state_.list.contact_skin) {  // rounding aside, the bound tells
     travelled_ = displacement(state_);
     if (update_lists(state_, travelled_)) refresh_workspace(), travelled_ = 0;
   }
-  forces(dt, scene_.energy ? TallyLevel::works : tally);
   last_dt_ = dt;
   state_.time += dt;
   ++state_.step;
 }
 
+void Engine::respond(double next_dt, TallyLevel tally) {
+  if (scene_.energy) tally = TallyLevel::works;
+  const bool works = tally == TallyLevel::works;
+  const double span = 0.5 * (last_dt_ + next_dt);
+  forces(last_dt_, tally, [&](std::size_t k) { kick_chunk(state_, work_, k, span, kick_, works); });
+  end_kick(next_dt);
+}
+
 void Engine::kick(double next_dt) {
-  sums_ = eg::kick(state_, work_, 0.5 * (last_dt_ + next_dt), kick_, level_ == TallyLevel::works);
+  const double span = 0.5 * (last_dt_ + next_dt);
+  for (std::size_t k = 0; k < work_.schedule.chunks(); ++k)
+    kick_chunk(state_, work_, k, span, kick_, level_ == TallyLevel::works);
+  end_kick(next_dt);
+}
+
+void Engine::end_kick(double next_dt) {
+  work_.clean = true;
+  sums_ = {};
+  for (const auto& s : work_.kick_sums) sums_ += s;
   auto& e = state_.ledger;
   e.local_damping += sums_.local_damping, e.mass_damping += sums_.mass_damping;
   e.body += sums_.body, e.boundary += sums_.affine;

@@ -1,5 +1,5 @@
 #pragma once
-// One explicit step: drift, lists, forces, kick. Knows nothing of stages, files or how the step was chosen.
+// One explicit step: drift, lists, forces and kick. Knows nothing of stages, files or how the step was chosen.
 #include "dynamics/force_loop.hpp"
 #include "dynamics/integrate.hpp"
 
@@ -14,15 +14,18 @@ class Engine {
   void set_friction(const std::vector<double>& friction);  ///< µ per material
   void set_local_damping(double alpha) { kick_.local = alpha; }
 
-  /// Drift over state.dt, lists, forces at the new time. With an energy ledger everything is tallied at every step.
-  void move(TallyLevel tally);
-  /// Kick to the next half step; the next drift will take next_dt [s]. Advances state.time's velocity only.
-  void kick(double next_dt);
+  /// Positions over state.dt, and the lists.
+  void drift();
+  /// Forces at the new time, and velocities on to the next half step; the next drift will take next_dt [s]. With an
+  /// energy ledger everything is tallied at every step.
+  void respond(double next_dt, TallyLevel tally);
   /// Both, with one step length.
   void step(double dt, TallyLevel tally = TallyLevel::works) {
-    move(tally);
-    kick(dt);
+    drift();
+    respond(dt, tally);
   }
+  /// Velocities alone, by forces() at hand: the half kick at the start.
+  void kick(double next_dt);
 
   const Tally& tally() const { return tally_; }  ///< of the last move with tally
   const KickSums& kick_sums() const { return sums_; }
@@ -35,6 +38,8 @@ class Engine {
 
  private:
   void refresh_workspace();
+  void forces(double dt, TallyLevel tally, const AfterChunk& after);
+  void end_kick(double next_dt);
 
   const Scene& scene_;
   State& state_;

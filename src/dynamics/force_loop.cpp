@@ -2,6 +2,8 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "base/error.hpp"
 #include "contact/laws.hpp"
 #include "dynamics/force_loop_of.hpp"
@@ -24,12 +26,17 @@ std::unique_ptr<ForceLoop> make_force_loop(std::string_view law, bool frictionle
   return loop;
 }
 
+void ForceWorkspace::clear() {
+  if (!clean) std::fill(rows.begin(), rows.end(), Quad{});
+  clean = true;
+}
+
 void prepare(ForceWorkspace& work, const State& state, const ForceLoop& loop) {
   make_schedule(work.schedule, state.grains.size(), Contacts::chunk, state.contacts.j, state.contacts.chunk_begin);
   work.stride = loop.has_moments() ? 2 : 1;
   work.rows.assign(work.schedule.rows() * work.stride, Quad{});
   work.clean = true;
-  work.tally.resize(work.schedule.chunks());
+  work.tally.resize(work.schedule.chunks()), work.kick_sums.resize(work.schedule.chunks());
   work.shift.resize(Cell::images);
 }
 

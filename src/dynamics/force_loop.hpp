@@ -1,5 +1,6 @@
 #pragma once
 // Forces of all contacts. The scene decides once which instantiation runs: law, friction, rotation, number type.
+#include <functional>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -39,9 +40,10 @@ struct ForceWorkspace {
   AlignedVector<Quad> rows;
   std::size_t stride = 2;    ///< quads a row: 2 with moments, else 1
   bool clean = false;        ///< rows are zero: the kick leaves them so, while they are at hand
+  void clear();              ///< makes them so
   std::vector<Tally> tally;  ///< a chunk
   std::vector<KickSums> kick_sums;
-  std::vector<Quad> shift;   ///< translation of each image
+  std::vector<Quad> shift;  ///< translation of each image
 };
 
 /// What the loop adds up: nothing, stress and stiffness, or works and force statistics too.
@@ -55,6 +57,8 @@ struct ForceOptions {
   bool scalar = false;           ///< the reference path: one contact at a time
 };
 
+using AfterChunk = std::function<void(std::size_t chunk)>;
+
 class ForceLoop {
  public:
   virtual ~ForceLoop() = default;
@@ -64,10 +68,12 @@ class ForceLoop {
   /// Constants of all pairs of materials with these friction coefficients.
   virtual void set_materials(const std::vector<Material>& materials, const std::vector<double>& friction,
                              int dimension) = 0;
-  /// Forces of all grain–grain contacts after an increment of length dt: fills workspace.rows, updates history,
-  /// state.virial. Deterministic for any number of threads.
-  virtual Tally contacts(State& state, ForceWorkspace& work, double dt, const ForceOptions& options) const = 0;
-  /// Adds the wall contacts (after contacts()); sets Wall::force.
+  /// Adds forces of all grain–grain contacts after an increment of length dt to workspace.rows, updates history.
+  /// `after`, if any, is called once for each chunk as soon as all contacts of its grains are done, while they are at
+  /// hand; it may change their velocities. Deterministic for any number of threads.
+  virtual Tally contacts(State& state, ForceWorkspace& work, double dt, const ForceOptions& options,
+                         const AfterChunk& after) const = 0;
+  /// Adds the wall contacts; sets Wall::force.
   virtual Tally walls(State& state, ForceWorkspace& work, double dt, const ForceOptions& options) const = 0;
 };
 

@@ -1,5 +1,7 @@
 #pragma once
 // The force loop, once for every law and number type; included only by the files that instantiate it.
+#include <omp.h>
+
 #include <algorithm>
 
 #include "contact/lanes.hpp"
@@ -29,13 +31,23 @@ class ForceLoopOf final : public ForceLoop {
       }
   }
 
-  Tally contacts(State& state, ForceWorkspace& work, double dt, const ForceOptions& options) const override {
+  Tally contacts(State& state, ForceWorkspace& work, double dt, const ForceOptions& options,
+                 const AfterChunk& after) const override {
     const std::size_t chunks = work.schedule.chunks();
-    if (!work.clean) std::fill(work.rows.begin(), work.rows.end(), Quad{});
     work.clean = false;
     for (std::size_t c = 0; c < Cell::images; ++c) work.shift[c].set(state.cell.shift(static_cast<std::uint8_t>(c)));
-#pragma omp parallel for schedule(static) if (chunks >= Contacts::worth_threads)
-    for (std::size_t k = 0; k < chunks; ++k) work.tally[k] = run_chunk(state, work, k, dt, options);
+#pragma omp parallel if (chunks >= Contacts::worth_threads)
+    {
+      const auto [first, end] = own_share(chunks);
+      const auto alone = [&](std::size_t k) { return work.schedule.first_source[k] >= first; };
+      for (std::size_t k = first; k < end; ++k) {
+        work.tally[k] = run_chunk(state, work, k, dt, options);
+        if (after && alone(k)) after(k);
+      }
+#pragma omp barrier
+      for (std::size_t k = first; k < end; ++k)
+        if (after && !alone(k)) after(k);
+    }
     Tally total;
     for (std::size_t k = 0; k < chunks; ++k) total += work.tally[k];
     return total;
@@ -44,6 +56,14 @@ class ForceLoopOf final : public ForceLoop {
   Tally walls(State& state, ForceWorkspace& work, double dt, const ForceOptions& options) const override;
 
  private:
+  /// Chunks [first, end) of this thread. Contacts of a chunk reach grains of later chunks only, so its grains have all
+  /// their forces once it is done, unless another thread's chunk adds to them.
+  static std::pair<std::size_t, std::size_t> own_share(std::size_t chunks) {
+    const auto thread = static_cast<std::size_t>(omp_get_thread_num());
+    const auto threads = static_cast<std::size_t>(omp_get_num_threads());
+    return {chunks * thread / threads, chunks * (thread + 1) / threads};
+  }
+
   /// Number type and damping are settled here, outside the loop over contacts.
   Tally run_chunk(State& state, ForceWorkspace& work, std::size_t k, double dt, const ForceOptions& options) const {
     const bool damped = options.normal_ratio > 0 || options.shear_ratio > 0;
@@ -113,8 +133,8 @@ class ForceLoopOf final : public ForceLoop {
 
   template <class S, bool damped>
   EG_INLINE void respond(Outgoing<S>& out, const BothSides<S>& in, const Mat<S>& affine,
-                         const typename Law::template Constants<S>& uniform, State& state, std::size_t c,
-                         double dt, const ForceOptions& options, Sums<S>& sums) const {
+                         const typename Law::template Constants<S>& uniform, State& state, std::size_t c, double dt,
+                         const ForceOptions& options, Sums<S>& sums) const {
     Contacts& list = state.contacts;
     const Vec<S> branch = xyz(in.branch);
     const S sum = in.branch.w, ri = in.radius_i, rj = sum - ri, inverse_mass = in.velocity.w;
@@ -137,7 +157,8 @@ class ForceLoopOf final : public ForceLoop {
     if constexpr (damped)
       dashpot = {S(options.normal_ratio), S(options.shear_ratio),
                  select(inverse_mass > S(0.0), S(1.0) / inverse_mass, S(0.0)), S(dt > 0 ? 1 / dt : 0)};
-    const auto pair = Law::template pair<S>(!state.grains.material.empty() ? constants<S>(state, c) : uniform, grain_sizes(ri, rj));
+    const auto pair =
+        Law::template pair<S>(!state.grains.material.empty() ? constants<S>(state, c) : uniform, grain_sizes(ri, rj));
     const ContactForce<S> f = interact<Law, damped>(pair, g, inc, touching, history, dashpot);
     for (std::size_t h = 0; h < history.size(); ++h) store_values(stored + h * Contacts::lanes, history[h]);
     put(out.force, f.on_j);

@@ -13,10 +13,18 @@ std::size_t chunks_of(std::size_t n) { return (n + chunk - 1) / chunk; }
 Double4& vector(Quad& q) { return *reinterpret_cast<Double4*>(&q); }
 
 // A row is one quad (velocity), or two side by side (velocity | spin): V is Double4 or Double8.
-EG_INLINE Double4 spread(Double4 v, std::integral_constant<int, 0>) { return __builtin_shufflevector(v, v, 0, 0, 0, 0); }
-EG_INLINE Double4 spread(Double4 v, std::integral_constant<int, 1>) { return __builtin_shufflevector(v, v, 1, 1, 1, 1); }
-EG_INLINE Double4 spread(Double4 v, std::integral_constant<int, 2>) { return __builtin_shufflevector(v, v, 2, 2, 2, 2); }
-EG_INLINE Double4 spread(Double4 v, std::integral_constant<int, 3>) { return __builtin_shufflevector(v, v, 3, 3, 3, 3); }
+EG_INLINE Double4 spread(Double4 v, std::integral_constant<int, 0>) {
+  return __builtin_shufflevector(v, v, 0, 0, 0, 0);
+}
+EG_INLINE Double4 spread(Double4 v, std::integral_constant<int, 1>) {
+  return __builtin_shufflevector(v, v, 1, 1, 1, 1);
+}
+EG_INLINE Double4 spread(Double4 v, std::integral_constant<int, 2>) {
+  return __builtin_shufflevector(v, v, 2, 2, 2, 2);
+}
+EG_INLINE Double4 spread(Double4 v, std::integral_constant<int, 3>) {
+  return __builtin_shufflevector(v, v, 3, 3, 3, 3);
+}
 template <int k>
 EG_INLINE Double8 spread(Double8 v, std::integral_constant<int, k>) {
   return __builtin_shufflevector(v, v, k, k, k, k, k + 4, k + 4, k + 4, k + 4);
@@ -79,11 +87,13 @@ EG_INLINE V kicked(V before, V force, double dt, const KickOptions& options, con
 }
 
 template <bool works, class V>
-KickSums kick_chunk(State& state, ForceWorkspace& work, std::size_t k, double dt, const KickOptions& options) {
+KickSums kick_rows(State& state, ForceWorkspace& work, std::size_t k, double dt, const KickOptions& options) {
   constexpr bool turning = sizeof(V) == sizeof(Double8);
   auto& g = state.grains;
   const std::size_t low = k * chunk, high = std::min(g.size(), low + chunk);
-  const auto row = [&](std::size_t r) -> V& { return *reinterpret_cast<V*>(&work.rows[r * (sizeof(V) / sizeof(Quad))]); };
+  const auto row = [&](std::size_t r) -> V& {
+    return *reinterpret_cast<V*>(&work.rows[r * (sizeof(V) / sizeof(Quad))]);
+  };
   const Schedule& s = work.schedule;
   for (Index e = s.gather_begin[k]; e < s.gather_begin[k + 1]; ++e) {
     row(s.gather_grain[e]) += row(s.gather_row[e]);
@@ -94,8 +104,8 @@ KickSums kick_chunk(State& state, ForceWorkspace& work, std::size_t k, double dt
   KickSums sums;
   for (std::size_t i = low; i < high; ++i) {
     if constexpr (turning) {
-      const V after = kicked<works, V>(join(vector(g.velocity[i]), vector(g.spin[i])), row(i), dt, options, affine,
-                                       gravity, sums);
+      const V after =
+          kicked<works, V>(join(vector(g.velocity[i]), vector(g.spin[i])), row(i), dt, options, affine, gravity, sums);
       vector(g.velocity[i]) = __builtin_shufflevector(after, after, 0, 1, 2, 3);
       vector(g.spin[i]) = __builtin_shufflevector(after, after, 4, 5, 6, 7);
     } else {
@@ -104,19 +114,6 @@ KickSums kick_chunk(State& state, ForceWorkspace& work, std::size_t k, double dt
     row(i) = V{};
   }
   return sums;
-}
-
-template <class V>
-KickSums kick_rows(State& state, ForceWorkspace& work, double dt, const KickOptions& options, bool works) {
-  const std::size_t chunks = work.schedule.chunks();
-  work.kick_sums.resize(chunks);
-#pragma omp parallel for schedule(static) if (chunks >= Contacts::worth_threads)
-  for (std::size_t k = 0; k < chunks; ++k)
-    work.kick_sums[k] = works ? kick_chunk<true, V>(state, work, k, dt, options)
-                              : kick_chunk<false, V>(state, work, k, dt, options);
-  KickSums total;
-  for (const auto& s : work.kick_sums) total += s;
-  return total;
 }
 
 }  // namespace
@@ -166,10 +163,12 @@ double displacement(const State& state) {
   return std::sqrt(most);
 }
 
-KickSums kick(State& state, ForceWorkspace& work, double dt, const KickOptions& options, bool works) {
-  work.clean = true;
-  return work.stride == 2 ? kick_rows<Double8>(state, work, dt, options, works)
-                          : kick_rows<Double4>(state, work, dt, options, works);
+void kick_chunk(State& state, ForceWorkspace& work, std::size_t k, double dt, const KickOptions& options, bool works) {
+  const auto run = [&]<class V>(V) {
+    work.kick_sums[k] =
+        works ? kick_rows<true, V>(state, work, k, dt, options) : kick_rows<false, V>(state, work, k, dt, options);
+  };
+  work.stride == 2 ? run(Double8{}) : run(Double4{});
 }
 
 }  // namespace eg

@@ -16,8 +16,10 @@ double drift(State& state, double dt);
 /// Largest peculiar displacement since contacts were refreshed [m].
 double displacement(const State& state);
 
-/// c ← c + dt (F/m + g − L c) with damping, ω likewise; dt is the span between the half steps on both sides.
-/// The sums are made only with `works`. Uses up the forces: rows of the workspace are zero afterwards.
-KickSums kick(State& state, ForceWorkspace& work, double dt, const KickOptions& options, bool works);
+/// c ← c + dt (F/m + g − L c) with damping, ω likewise, for the grains of one chunk; dt is the span between the half
+/// steps on both sides. Uses up the forces: rows of the workspace are zero afterwards. `works`: fills
+/// work.kick_sums[chunk].
+void kick_chunk(State& state, ForceWorkspace& work, std::size_t chunk, double dt, const KickOptions& options,
+                bool works);
 
 }  // namespace eg

@@ -80,11 +80,11 @@ bool run_stages(const Scene& scene, State& state, StepPolicy& policy, const RunO
     const double strain_before = std::abs(stage_strain(state)[state.dimension == 3 ? 2 : 1]);
     ++state.stage_step;
     const TallyLevel level = tally_level(state, stage);
-    engine.move(level);
-    state.stage_time += state.dt;
     const double taken = state.dt;
+    engine.drift();
+    state.stage_time += taken;
+    engine.respond(policy.next_step(state), level);
     control_cell(state, stage, taken);
-    engine.kick(policy.next_step(state));
     const bool checked = level == TallyLevel::works;
     if (checked) state.unbalanced = engine.unbalanced_ratio(), state.kinetic = engine.kick_sums().kinetic;
 

@@ -54,7 +54,8 @@ void visit_contacts(Archive& a, C& contacts) {
 
 template <class Archive, class L>
 void visit_list(Archive& a, L& list) {
-  auto& [begin, j, image, skin, contact_skin, longest, used, reference, reference_cell, builds, refreshes] = list;
+  auto& [begin, j, image, skin, contact_skin, longest, used, reference, reference_cell, builds, refreshes, refreshed] =
+      list;
   a.array("list/begin", "-", begin);
   a.array("list/j", "-", j);
   a.array("list/image", "-", image);
@@ -66,6 +67,7 @@ void visit_list(Archive& a, L& list) {
   a.value("list/reference_cell", "m", reference_cell);
   a.value("list/builds", "-", builds);
   a.value("list/refreshes", "-", refreshes);
+  a.value("list/refreshed", "-", refreshed);
 }
 
 template <class Archive, class W>

@@ -195,10 +195,19 @@ double used_skin(const State& state, double displacement) {
   return 2 * displacement + norm(strain) * state.list.longest + walls;
 }
 
+/// A wide skin makes the force loop take pairs that do not touch, a narrow one makes refreshes frequent; a refresh
+/// costs about three steps.
+static void fit_contact_skin(NeighbourList& list, std::uint64_t life) {
+  if (life < 150) list.contact_skin = std::min(1.25 * list.contact_skin, 0.25 * list.skin);
+  if (life > 600) list.contact_skin = std::max(0.8 * list.contact_skin, 0.01 * list.skin);
+}
+
 bool update_lists(State& state, double displacement) {
   auto& list = state.list;
   const double used = used_skin(state, displacement);
   if (used <= list.contact_skin) return false;
+  fit_contact_skin(list, state.step - list.refreshed);
+  list.refreshed = state.step;
   if (list.used + used > list.skin - list.contact_skin) {
     rebuild_neighbours(state, list.skin, list.contact_skin);
   } else {
@@ -212,7 +221,7 @@ std::array<double, 2> default_skins(const State& state) {
   double mean = 0;
   for (const auto& p : state.grains.position) mean += p.w;
   mean /= static_cast<double>(std::max<std::size_t>(1, state.grains.size()));
-  return {0.2 * mean, 0.012 * mean};
+  return {0.2 * mean, 0.006 * mean};
 }
 
 }  // namespace eg

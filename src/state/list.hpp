@@ -21,6 +21,7 @@ struct NeighbourList {
   std::vector<Vec3> reference;  ///< positions when State::contacts was last refreshed [m]
   Mat3 reference_cell;          ///< cell matrix then
   std::uint64_t builds = 0, refreshes = 0;
+  std::uint64_t refreshed = 0;  ///< step of the last refresh
 };
 
 }  // namespace eg

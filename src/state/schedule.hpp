@@ -16,6 +16,7 @@ struct Schedule {
   std::vector<Index> gather_begin;  ///< entries of chunk k: [gather_begin[k], gather_begin[k+1]), sorted by grain
   std::vector<Index> gather_grain;  ///< grain of an entry, and the halo row to add to it
   std::vector<Index> gather_row;
+  std::vector<Index> first_source;  ///< first chunk with a pair whose j lies in chunk k (k itself if none)
   std::size_t grains = 0;
 
   std::size_t rows() const { return grains + gather_row.size(); }

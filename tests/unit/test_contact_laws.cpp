@@ -36,7 +36,7 @@ TEST(HertzMindlin, CheckValues) {
   EXPECT_NEAR(n.force, 0.98251472, 1e-8);
   EXPECT_NEAR(n.stiffness, 1473772.08, 0.01);
   EXPECT_NEAR(n.tangential, 1379701.52, 0.01);
-  EXPECT_NEAR(HertzMindlin::pair<double>(c, wall_sizes(1e-3)).r_star, 1e-3, 1e-18);
+  EXPECT_NEAR(wall_sizes(1e-3).r_star(), 1e-3, 1e-18);
 }
 
 TEST(HertzMindlin, RescalingShortensShearOnUnloadingOnly) {
@@ -168,24 +168,25 @@ TEST(Contact, StoredShearKeepsItsLengthAndTurnsWithTheBody) {
   EXPECT_NEAR(spun.y, 4 * std::cos(angle) + 3 * std::sin(angle), 1e-8);
 }
 
-TEST(Batch, PairLoadsEqualTheScalarOnes) {
+TEST(Batch, LoadsOfBothSidesEqualTheScalarOnes) {
   Random random(8);
-  std::array<Quad, 12> rows, radii;
-  for (auto* set : {&rows, &radii})
-    for (auto& q : *set) q = {random.normal(), random.normal(), random.normal(), random.uniform(1, 2)};
+  std::array<Quad, 12> position, velocity, spin, shift;
+  for (auto* set : {&position, &velocity, &spin, &shift})
+    for (auto& q : *set) q = {random.normal(), random.normal(), random.normal(), set == &shift ? 0 : random.uniform()};
   const std::array<Index, 8> i{0, 0, 1, 2, 2, 2, 3, 3}, j{4, 5, 2, 7, 8, 9, 3, 11};
   const std::array<std::uint8_t, 8> image{0, 1, 2, 3, 4, 5, 6, 7};
-  const auto d = load_difference<Batch>(rows.data(), i.data(), j.data(), radii.data(), image.data());
-  const auto w = load_weighted_sum<Batch>(rows.data(), radii.data(), i.data(), j.data());
-  const auto s = load_sum<Batch>(rows.data(), i.data(), j.data());
+  BothSides<Batch> all;
+  load_sides<true, Batch>(all, position.data(), velocity.data(), spin.data(), i.data(), j.data(), shift.data(),
+                          image.data());
   for (std::size_t k = 0; k < 8; ++k) {
-    const auto d1 = load_difference<double>(rows.data(), &i[k], &j[k], radii.data(), &image[k]);
-    const auto w1 = load_weighted_sum<double>(rows.data(), radii.data(), &i[k], &j[k]);
-    EXPECT_NEAR(d.x[k], d1.x, 1e-14);
-    EXPECT_NEAR(d.w[k], d1.w + radii[image[k]].w * 1.0, 1e-14);  // the table's w is added too; images have 0
-    EXPECT_NEAR(w.z[k], w1.z, 1e-14);
-    EXPECT_NEAR(s.y[k], rows[i[k]].y + rows[j[k]].y, 1e-14);
-    EXPECT_EQ(load_w<Batch>(rows.data(), j.data())[k], rows[j[k]].w);
+    BothSides<double> one;
+    load_sides<true, double>(one, position.data(), velocity.data(), spin.data(), &i[k], &j[k], shift.data(), &image[k]);
+    EXPECT_NEAR(all.branch.x[k], one.branch.x, 1e-14);
+    EXPECT_NEAR(all.branch.w[k], one.branch.w, 1e-14);
+    EXPECT_NEAR(all.velocity.y[k], one.velocity.y, 1e-14);
+    EXPECT_EQ(all.spin_i.z[k], one.spin_i.z);
+    EXPECT_EQ(all.spin_j.w[k], one.spin_j.w);
+    EXPECT_EQ(all.radius_i[k], position[i[k]].w);
   }
 }
 

@@ -106,9 +106,8 @@ State pressed(const Scene& scene, double dt) {
   engine.set_local_damping(0.7);
   engine.kick(dt);
   do {
-    engine.move(TallyLevel::works);
+    engine.step(dt);
     control_cell(state, stage, dt);
-    engine.kick(dt);
   } while (stress_error(state, stage) > 1e-4 || engine.unbalanced_ratio() > 1e-4);
   return state;
 }
