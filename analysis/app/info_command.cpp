@@ -40,7 +40,7 @@ std::vector<ArraySize> arrays_of(const State& s, const ForceWorkspace& w) {
           {"ids", bytes_of(s.grains.id), false},
           {"materials", bytes_of(s.grains.material), false},
           {"forces", bytes_of(w.rows), false},
-          {"force schedule", bytes_of(w.schedule.gather_begin) + bytes_of(w.schedule.gather_row), false},
+          {"force schedule", bytes_of(w.schedule.gather_grain) + bytes_of(w.schedule.gather_row), false},
           {"reference positions", bytes_of(s.list.reference), false},
           {"neighbour list", bytes_of(s.list.begin) + bytes_of(s.list.j) + bytes_of(s.list.image), false},
           {"contact pairs",
