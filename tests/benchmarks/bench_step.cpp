@@ -21,8 +21,8 @@ void step(benchmark::State& bench, const Scene& scene) {
   engine.step(still);
   const double touching = engine.tally().touching;
   for (auto _ : bench) engine.step(still, TallyLevel::none);
-  bench.counters["per_contact"] = benchmark::Counter(
-      touching, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  bench.counters["per_contact"] =
+      benchmark::Counter(touching, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 void refresh(benchmark::State& bench) {
@@ -72,13 +72,17 @@ void frictionless_step(benchmark::State& bench) {
 
 int main(int argc, char** argv) {
   for (const auto& law : law_names())
-    benchmark::RegisterBenchmark(("step/" + law).c_str(), [law](benchmark::State& bench) { step(bench, test::scene_of(law)); })
-        ->Unit(benchmark::kMicrosecond);
+    benchmark::RegisterBenchmark(("step/" + law).c_str(), [law](benchmark::State& bench) {
+      step(bench, test::scene_of(law));
+    })->Unit(benchmark::kMicrosecond);
   benchmark::RegisterBenchmark("step/frictionless", frictionless_step)->Unit(benchmark::kMicrosecond);
   benchmark::RegisterBenchmark("step/disks", flat_step)->Unit(benchmark::kMicrosecond);
   benchmark::RegisterBenchmark("list/refresh", refresh)->Unit(benchmark::kMicrosecond);
   benchmark::RegisterBenchmark("list/rebuild", rebuild)->Unit(benchmark::kMicrosecond);
-  benchmark::RegisterBenchmark("stiffness_product", stiffness_product)->Arg(10000)->Arg(100000)->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark("stiffness_product", stiffness_product)
+      ->Arg(10000)
+      ->Arg(100000)
+      ->Unit(benchmark::kMicrosecond);
   benchmark::RegisterBenchmark("triad", triad)->Unit(benchmark::kMillisecond);
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();

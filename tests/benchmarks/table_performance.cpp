@@ -42,7 +42,8 @@ void pin(bool one) {
   if (one) {
     int first = 0;
     while (!CPU_ISSET(first, &all)) ++first;
-    CPU_ZERO(&set), CPU_SET(first, &set);
+    CPU_ZERO(&set);
+    CPU_SET(first, &set);
   }
   sched_setaffinity(0, sizeof set, &set);
 }
@@ -97,8 +98,8 @@ void write_lammps(const Case& c, const std::string& folder) {
       "pair_style gran/hertz/history {:.17g} {:.17g} 0 NULL {} 1\npair_coeff * *\ntimestep {}\n"
       "fix 1 all nve/sphere\nfix 2 all deform 1 x erate {} y erate {} z erate {} remap x\nthermo 1000000\n"
       "run 10\nrun {}\n",
-      folder, 1e-4, 4 * m.shear_modulus / (3 * (1 - m.poisson)), 4 * m.shear_modulus / (2 - m.poisson), m.friction, c.dt,
-      -c.rate, -c.rate, -c.rate, c.steps);
+      folder, 1e-4, 4 * m.shear_modulus / (3 * (1 - m.poisson)), 4 * m.shear_modulus / (2 - m.poisson), m.friction,
+      c.dt, -c.rate, -c.rate, -c.rate, c.steps);
 }
 
 /// Loop time that LAMMPS reports [s]; negative when it does not run.
