@@ -54,12 +54,30 @@ void StiffnessOperator::build_links(const Network& network) {
   make_schedule(schedule_, grains_ + 1, chunk_grains, j_, chunk_begin);  // the last "grain" takes what walls are given
   first_links_.clear();
   for (const auto c : chunk_begin) first_links_.push_back(c / lanes);
-  sums_.resize(2 * schedule_.rows());
+  sums_.assign(2 * schedule_.rows(), Quad{});
 }
+
+namespace {
+
+using Loose4 = double __attribute__((vector_size(32), aligned(8)));
+
+Double4 scaled(const double* entry, double scale) {
+  return *reinterpret_cast<const Loose4*>(entry) * Double4{scale, scale, scale, 0};
+}
+void put(double* entry, Double4 v) { *reinterpret_cast<Loose4*>(entry) = v; }
+
+}  // namespace
 
 template <int... component>
 void StiffnessOperator::load(std::size_t chunk, const double* x) const {
-  for (std::size_t g = chunk * chunk_grains; g < std::min(grains_, (chunk + 1) * chunk_grains); ++g) {
+  const std::size_t low = chunk * chunk_grains, high = std::min(grains_, low + chunk_grains);
+  std::size_t g = low;
+  if constexpr (sizeof...(component) == 6)  // four entries at a time; a row's last three end within the next row
+    for (; g + 1 < high; ++g) {
+      reinterpret_cast<Double4&>(u_[g]) = scaled(x + 6 * g, scale_[g]);
+      reinterpret_cast<Double4&>(turn_[g]) = scaled(x + 6 * g + 3, turn_scale_[g]);
+    }
+  for (; g < high; ++g) {
     double row[6] = {};
     const double* entry = x + g * sizeof...(component);
     ((row[component] = *entry++), ...);
@@ -69,42 +87,45 @@ void StiffnessOperator::load(std::size_t chunk, const double* x) const {
   }
 }
 
+/// Adds the contacts of a chunk to `sums_`, which are zero before.
 void StiffnessOperator::sum(std::size_t chunk) const {
-  const std::size_t low = chunk * chunk_grains, high = std::min(grains_, low + chunk_grains);
   Quad* sums = sums_.data();
-  std::fill(sums + 2 * low, sums + 2 * high, Quad{});
-  std::fill(sums + 2 * schedule_.halo_begin[chunk], sums + 2 * schedule_.halo_begin[chunk + 1], Quad{});
-  constexpr std::size_t ahead = 4;  // blocks between a prefetch and its use
   for (std::size_t b = first_links_[chunk]; b < first_links_[chunk + 1]; ++b) {
     const Links& s = links_[b];
     const Index *i = &i_[lanes * b], *j = &j_[lanes * b], *to = &schedule_.target[lanes * b];
-    if (b + ahead < first_links_[chunk + 1])
-      for (std::size_t k = lanes * ahead; k < lanes * (ahead + 1); ++k) {
-        __builtin_prefetch(&u_[j[k]]), __builtin_prefetch(&turn_[j[k]]);
-        __builtin_prefetch(sums + 2 * to[k], 1);
-      }
     const Vec<Batch> n{load_lanes(s.nx), load_lanes(s.ny), load_lanes(s.nz)};
     const Batch arm_i = load_lanes(s.arm_i), arm_j = load_lanes(s.arm_j);
     const auto turn_i = xyz(load_rows<Batch>(turn_.data(), i)), turn_j = xyz(load_rows<Batch>(turn_.data(), j));
     const Vec<Batch> relative =
         xyz(load_difference<Batch>(u_.data(), i, j)) + cross(n, turn_i * arm_i + turn_j * arm_j);
     const Vec<Batch> force = relative * load_lanes(s.tangential) + n * (load_lanes(s.excess) * dot(n, relative));
-    add_contact<2, Batch>(sums, i, to, force, cross(force, n), arm_i, arm_j);
+    add_contact<2, Batch>(sums, i, to, force, cross(force, n), s.arm_i, s.arm_j);
   }
 }
 
+/// Takes the sums of a chunk's grains, and leaves zeros.
 template <int... component>
 void StiffnessOperator::store(std::size_t chunk, double* y) const {
+  const auto row = [this](std::size_t r) -> Double8& { return reinterpret_cast<Double8&>(sums_[2 * r]); };
   for (Index e = schedule_.gather_begin[chunk]; e < schedule_.gather_begin[chunk + 1]; ++e) {
-    Quad *to = &sums_[2 * schedule_.gather_grain[e]], *from = &sums_[2 * schedule_.gather_row[e]];
-    to[0].set(to[0].vec() + from[0].vec()), to[1].set(to[1].vec() + from[1].vec());
+    row(schedule_.gather_grain[e]) += row(schedule_.gather_row[e]);
+    row(schedule_.gather_row[e]) = Double8{};
   }
-  for (std::size_t g = chunk * chunk_grains; g < std::min(grains_, (chunk + 1) * chunk_grains); ++g) {
+  const std::size_t low = chunk * chunk_grains, high = std::min(grains_, low + chunk_grains);
+  std::size_t g = low;
+  if constexpr (sizeof...(component) == 6)
+    for (; g + 1 < high; ++g) {
+      put(y + 6 * g, reinterpret_cast<Double4&>(sums_[2 * g]) * scale_[g]);
+      put(y + 6 * g + 3, reinterpret_cast<Double4&>(sums_[2 * g + 1]) * turn_scale_[g]);
+      row(g) = Double8{};
+    }
+  for (; g < high; ++g) {
     const Vec3 u = sums_[2 * g].vec(), turn = sums_[2 * g + 1].vec();
     const double m = scale_[g], i = turn_scale_[g];
-    const double row[6] = {m * u.x, m * u.y, m * u.z, i * turn.x, i * turn.y, i * turn.z};
+    const double values[6] = {m * u.x, m * u.y, m * u.z, i * turn.x, i * turn.y, i * turn.z};
     double* entry = y + g * sizeof...(component);
-    ((*entry++ = row[component]), ...);
+    ((*entry++ = values[component]), ...);
+    row(g) = Double8{};
   }
 }
 
@@ -115,10 +136,8 @@ void StiffnessOperator::run(const double* x, double* y) const {
   {
 #pragma omp for schedule(static)
     for (std::size_t c = 0; c < chunks; ++c) load<component...>(c, x);
-#pragma omp for schedule(static)
-    for (std::size_t c = 0; c < chunks; ++c) sum(c);
-#pragma omp for schedule(static)
-    for (std::size_t c = 0; c < chunks; ++c) store<component...>(c, y);
+    run_chunks(
+        schedule_, [&](std::size_t c) { sum(c); }, [&](std::size_t c) { store<component...>(c, y); });
   }
 }
 

@@ -11,7 +11,9 @@ struct Columns {
   S x, y, z, w;
 };
 
+/// Lanes of a batch in memory.
 EG_INLINE const double* lanes_at(const Batch& b) { return reinterpret_cast<const double*>(&b); }
+EG_INLINE const double* lanes_at(const double& b) { return &b; }
 EG_INLINE Double4 quad_vector(const Quad& q) { return *reinterpret_cast<const Double4*>(&q); }
 
 /// Rows a and b side by side.
@@ -92,18 +94,18 @@ EG_INLINE void load_sides(BothSides<S>& out, const Quad* position, const Quad* v
 /// `stride` is 2. Lane after lane, so that one grain may stand in several.
 template <std::size_t stride, class S>
 EG_INLINE void add_contact(Quad* rows, const Index* i, const Index* j, const Vec<S>& f, const Vec<S>& moment,
-                           const S& arm_i, const S& arm_j) {
+                           const double* arm_i, const double* arm_j) {
   if constexpr (lanes_of<S> == 1) {
     const auto add = [](Quad& q, const Vec3& v) { q.set(q.vec() + v); };
     add(rows[stride * i[0]], -f), add(rows[stride * j[0]], f);
-    if constexpr (stride == 2) add(rows[2 * i[0] + 1], moment * arm_i), add(rows[2 * j[0] + 1], moment * arm_j);
+    if constexpr (stride == 2) add(rows[2 * i[0] + 1], moment * *arm_i), add(rows[2 * j[0] + 1], moment * *arm_j);
   } else if constexpr (stride == 2) {
     const auto at = [rows](std::size_t k) -> Double8& { return *reinterpret_cast<Double8*>(rows + 2 * k); };
     Double8 row[8];
     transpose_columns({f.x, f.y, f.z, Batch(0.0)}, {moment.x, moment.y, moment.z, Batch(0.0)}, row);
     for (std::size_t k = 0; k < 8; ++k) {
-      at(i[k]) += row[k] * halves(-1, lanes_at(arm_i)[k]);
-      at(j[k]) += row[k] * halves(1, lanes_at(arm_j)[k]);
+      at(i[k]) += row[k] * halves(-1, arm_i[k]);
+      at(j[k]) += row[k] * halves(1, arm_j[k]);
     }
   } else {
     const auto at = [rows](std::size_t k) -> Double4& { return *reinterpret_cast<Double4*>(rows + k); };

@@ -1,7 +1,5 @@
 #pragma once
 // The force loop, once for every law and number type; included only by the files that instantiate it.
-#include <omp.h>
-
 #include <algorithm>
 
 #include "contact/lanes.hpp"
@@ -37,17 +35,11 @@ class ForceLoopOf final : public ForceLoop {
     work.clean = false;
     for (std::size_t c = 0; c < Cell::images; ++c) work.shift[c].set(state.cell.shift(static_cast<std::uint8_t>(c)));
 #pragma omp parallel if (chunks >= Contacts::worth_threads)
-    {
-      const auto [first, end] = own_share(chunks);
-      const auto alone = [&](std::size_t k) { return work.schedule.first_source[k] >= first; };
-      for (std::size_t k = first; k < end; ++k) {
-        work.tally[k] = run_chunk(state, work, k, dt, options);
-        if (after && alone(k)) after(k);
-      }
-#pragma omp barrier
-      for (std::size_t k = first; k < end; ++k)
-        if (after && !alone(k)) after(k);
-    }
+    run_chunks(
+        work.schedule, [&](std::size_t k) { work.tally[k] = run_chunk(state, work, k, dt, options); },
+        [&](std::size_t k) {
+          if (after) after(k);
+        });
     Tally total;
     for (std::size_t k = 0; k < chunks; ++k) total += work.tally[k];
     return total;
@@ -56,14 +48,6 @@ class ForceLoopOf final : public ForceLoop {
   Tally walls(State& state, ForceWorkspace& work, double dt, const ForceOptions& options) const override;
 
  private:
-  /// Chunks [first, end) of this thread. Contacts of a chunk reach grains of later chunks only, so its grains have all
-  /// their forces once it is done, unless another thread's chunk adds to them.
-  static std::pair<std::size_t, std::size_t> own_share(std::size_t chunks) {
-    const auto thread = static_cast<std::size_t>(omp_get_thread_num());
-    const auto threads = static_cast<std::size_t>(omp_get_num_threads());
-    return {chunks * thread / threads, chunks * (thread + 1) / threads};
-  }
-
   /// Number type and damping are settled here, outside the loop over contacts.
   Tally run_chunk(State& state, ForceWorkspace& work, std::size_t k, double dt, const ForceOptions& options) const {
     const bool damped = options.normal_ratio > 0 || options.shear_ratio > 0;
@@ -117,7 +101,7 @@ class ForceLoopOf final : public ForceLoop {
         respond<S, damped>(out[b], in[b], affine, uniform, state, c + b * lanes, dt, options, sums);
       for (std::size_t b = 0; b < count; ++b)
         add_contact<stride, S>(rows, list.i.data() + c + b * lanes, target + c + b * lanes, out[b].force, out[b].moment,
-                               out[b].arm_i, out[b].arm_j);
+                               lanes_at(out[b].arm_i), lanes_at(out[b].arm_j));
     }
     return finish(sums);
   }

@@ -2,6 +2,8 @@
 // How pair loops add to grains from several threads with the same result for any number of them: a chunk of grains owns
 // its rows of the accumulator; what it adds to grains of other chunks goes to rows of its own ("halo"), which are added
 // in a fixed order afterwards.
+#include <omp.h>
+
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -22,6 +24,24 @@ struct Schedule {
   std::size_t rows() const { return grains + gather_row.size(); }
   std::size_t chunks() const { return halo_begin.empty() ? 0 : halo_begin.size() - 1; }
 };
+
+/// Within a parallel region: `work(chunk)` for every chunk, and `after(chunk)` as soon as all pairs of its grains are
+/// done, while they are at hand: pairs reach grains of later chunks only, so a chunk's grains have all they get once it
+/// is done, unless another thread's chunk adds to them.
+template <class Work, class After>
+void run_chunks(const Schedule& schedule, Work&& work, After&& after) {
+  const std::size_t chunks = schedule.chunks();
+  const auto thread = static_cast<std::size_t>(omp_get_thread_num());
+  const auto threads = static_cast<std::size_t>(omp_get_num_threads());
+  const std::size_t first = chunks * thread / threads, end = chunks * (thread + 1) / threads;
+  for (std::size_t k = first; k < end; ++k) {
+    work(k);
+    if (schedule.first_source[k] >= first) after(k);
+  }
+#pragma omp barrier
+  for (std::size_t k = first; k < end; ++k)
+    if (schedule.first_source[k] < first) after(k);
+}
 
 /// Pairs sorted by i, in chunks of `chunk` grains; `chunk_begin` as in Contacts. O(pairs).
 void make_schedule(Schedule& out, std::size_t grains, std::size_t chunk, std::span<const Index> j,

@@ -16,7 +16,7 @@ constexpr double still = 1e-13;  // [s]: the packing stays as it is
 
 /// Whole steps; counts contacts that touch.
 void step(benchmark::State& bench, const Scene& scene) {
-  State state = test::random_packing(scene, "uniform", grains);
+  State state = test::random_packing(scene, "uniform", grains, 1, scene.dimension == 3 ? 0.66 : 0.9);
   Engine engine(scene, state);
   engine.step(still);
   const double touching = engine.tally().touching;

@@ -198,10 +198,10 @@ TEST(Batch, ContactsAddUpOnOneGrainInSeveralLanes) {
   for (auto* v : {&f.x, &f.y, &f.z, &m.x, &m.y, &m.z, &ai, &aj})
     for (int k = 0; k < 8; ++k) v->v[k] = random.normal();
   std::array<Quad, 12> batch{}, scalar{};
-  add_contact<2, Batch>(batch.data(), i.data(), j.data(), f, m, ai, aj);
+  add_contact<2, Batch>(batch.data(), i.data(), j.data(), f, m, lanes_at(ai), lanes_at(aj));
   for (std::size_t k = 0; k < 8; ++k)
-    add_contact<2, double>(scalar.data(), &i[k], &j[k], {f.x[k], f.y[k], f.z[k]}, {m.x[k], m.y[k], m.z[k]}, ai[k],
-                           aj[k]);
+    add_contact<2, double>(scalar.data(), &i[k], &j[k], {f.x[k], f.y[k], f.z[k]}, {m.x[k], m.y[k], m.z[k]},
+                           lanes_at(ai) + k, lanes_at(aj) + k);
   for (std::size_t q = 0; q < 12; ++q) {
     EXPECT_NEAR(batch[q].x, scalar[q].x, 1e-14);
     EXPECT_NEAR(batch[q].y, scalar[q].y, 1e-14);
