@@ -41,6 +41,12 @@ void add_scaled(std::span<double> y, double a, std::span<const double> x) {
   for (std::ptrdiff_t k = 0; k < size; ++k) y[k] += a * x[k];
 }
 
+void scale_and_add(std::span<double> y, double a, std::span<const double> x) {
+  const auto size = static_cast<std::ptrdiff_t>(x.size());
+#pragma omp parallel for simd schedule(static) if (size > 8 * piece)
+  for (std::ptrdiff_t k = 0; k < size; ++k) y[k] = a * y[k] + x[k];
+}
+
 void scale(std::span<double> x, double a) {
   for (double& value : x) value *= a;
 }

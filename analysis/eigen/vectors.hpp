@@ -11,6 +11,8 @@ double dot(std::span<const double> x, std::span<const double> y);
 double norm(std::span<const double> x);
 /// y += a x
 void add_scaled(std::span<double> y, double a, std::span<const double> x);
+/// y = a y + x
+void scale_and_add(std::span<double> y, double a, std::span<const double> x);
 void scale(std::span<double> x, double a);
 /// Independent normal deviates, scaled to length 1.
 std::vector<double> random_unit_vector(std::size_t size, std::uint64_t seed);

@@ -107,6 +107,37 @@ void refill_stiffness(const Network& network, Eigen::SparseMatrix<double>& matri
   for (const Spring& spring : network.springs) for_each_block(spring, add);
 }
 
+std::vector<double> diagonal_blocks(const Network& network) {
+  const auto components = active_components(network);
+  const auto d = components.size();
+  std::vector<double> blocks(network.size() * d * d, 0.0);
+  // With B = [s 1, a n×]: Bᵀk B = [k, s a kt n×; ·, a² kt (1 − nnᵀ)]; a grain and its own image move alike (s = 0).
+  const auto add = [&](Index grain, const Spring& spring, double sign, double arm) {
+    const Vec3& n = spring.n;
+    const double kt = spring.tangential, turn = arm * arm * kt, mixed = sign * arm * kt;
+    const Vec3 cross_rows[3] = {{0, -n.z, n.y}, {n.z, 0, -n.x}, {-n.y, n.x, 0}};
+    double* block = &blocks[grain * d * d];
+    for (std::size_t p = 0; p < d; ++p)
+      for (std::size_t q = 0; q < d; ++q) {
+        const int r = components[p], c = components[q];
+        const double same = r % 3 == c % 3 ? 1.0 : 0.0, nn = n[r % 3] * n[c % 3];
+        if (r < 3 && c < 3) block[p * d + q] += std::abs(sign) * (kt * same + (spring.normal - kt) * nn);
+        if (r >= 3 && c >= 3) block[p * d + q] += turn * (same - nn);
+        if (r < 3 && c >= 3) block[p * d + q] += mixed * cross_rows[r][c - 3];
+        if (r >= 3 && c < 3) block[p * d + q] += mixed * cross_rows[c][r - 3];
+      }
+  };
+  for (const Spring& s : network.springs) {
+    if (s.i == s.j) {
+      add(s.i, s, 0, s.arm_i + s.arm_j);
+      continue;
+    }
+    add(s.i, s, -1, s.arm_i);
+    if (s.j != no_index) add(s.j, s, 1, s.arm_j);
+  }
+  return blocks;
+}
+
 std::vector<double> inverse_mass_diagonal(const Network& network) {
   std::vector<double> diagonal;
   diagonal.reserve(total_dofs(network));

@@ -34,6 +34,9 @@ Eigen::SparseMatrix<double> stiffness_matrix(const Network& network);
 /// New values into a matrix that stiffness_matrix() made for the same pairs of grains.
 void refill_stiffness(const Network& network, Eigen::SparseMatrix<double>& matrix);
 
+/// The block of every grain on the diagonal of K, dofs_per_grain()² numbers each, symmetric.
+std::vector<double> diagonal_blocks(const Network& network);
+
 /// Diagonal of M⁻¹ [1/kg and 1/(kg m²)]; 0 for what cannot move.
 std::vector<double> inverse_mass_diagonal(const Network& network);
 
