@@ -51,6 +51,7 @@ int main(int argc, char** argv) {
   eg::Action action;
   eg::add_run_command(app, action);
   eg::add_timestep_command(app, action);
+  eg::add_stiffness_command(app, action);
   eg::add_waves_command(app, action);
   eg::add_measure_command(app, action);
   eg::add_info_command(app, action);

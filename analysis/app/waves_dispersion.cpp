@@ -5,13 +5,13 @@
 #include <cmath>
 
 #include "app/packing_input.hpp"
+#include "app/spring_file.hpp"
 #include "app/waves_commands.hpp"
 #include "assembly/linearise.hpp"
 #include "assembly/stiffness.hpp"
 #include "base/error.hpp"
 #include "base/progress.hpp"
 #include "io/hdf5_file.hpp"
-#include "io/text_file.hpp"
 #include "report/table.hpp"
 #include "waves/dispersion.hpp"
 #include "waves/unit_cell.hpp"
@@ -167,18 +167,6 @@ void write_tables(const DispersionReport& r, const std::string& path) {
   file.close();
 }
 
-/// The unit cell for other programs: a line a grain, a line a spring.
-void write_springs(const DispersionReport& r, const std::string& path) {
-  const auto& net = r.unit.network;
-  std::string text = fmt::format("{} {} {}\n", net.dimension, net.size(), net.springs.size());
-  for (std::size_t g = 0; g < net.size(); ++g)
-    text += fmt::format("{:.17g} {:.17g}\n", net.inverse_mass[g], net.rotation ? net.inverse_inertia[g] : 0.0);
-  for (const auto& s : net.springs)
-    text += fmt::format("{} {} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\n", s.i + 1, s.j + 1,
-                        s.n.x * s.length, s.n.y * s.length, s.n.z * s.length, s.normal, s.tangential, s.arm_i, s.arm_j);
-  write_file(path, text);
-}
-
 Figure figure_of(const DispersionReport& r) {
   Figure figure;
   figure.title = r.title.empty() ? r.name : r.title;
@@ -223,7 +211,7 @@ int dispersion_command(const DispersionFlags& flags) {
   else
     fmt::print("{}", text_of(r));
   if (!flags.tables.empty()) write_tables(r, flags.tables);
-  if (!flags.springs.empty()) write_springs(r, flags.springs);
+  if (!flags.springs.empty()) write_springs(r.unit.network, flags.springs);
   if (!flags.figure.empty()) save_figure(figure_of(r), flags.figure);
   return 0;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// As much of HDF5 as a snapshot needs: datasets of numbers with a unit, texts, and one-line errors. Private to io.
+// As much of HDF5 as a snapshot needs: datasets of numbers with a unit, texts, and one-line errors.
 #include <cstdint>
 #include <string>
 #include <utility>
