@@ -2,6 +2,7 @@
 
 #include <hdf5.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <type_traits>
 
@@ -156,6 +157,28 @@ Hdf5Handle Hdf5Reader::open(const std::string& name, hid_t type, Hdf5Shape& shap
 void Hdf5Reader::read(const Hdf5Handle& set, const std::string& name, hid_t type, void* data) const {
   const Quiet quiet;
   if (H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) damaged(name, "cannot be read");
+}
+
+void Hdf5Reader::read_run(const Hdf5Handle& set, const std::string& name, hid_t type, Hdf5Shape shape,
+                          const std::array<unsigned long long, 2>& run, void* data) const {
+  const Quiet quiet;
+  Hdf5Shape first(shape.size(), 0);
+  first.at(0) = run[0], shape.at(0) = run[1];
+  const Hdf5Handle file(H5Dget_space(set), H5Sclose);
+  const Hdf5Handle memory(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
+  if (H5Sselect_hyperslab(file, H5S_SELECT_SET, first.data(), nullptr, shape.data(), nullptr) < 0 ||
+      H5Dread(set, type, memory, file, H5P_DEFAULT, data) < 0)
+    damaged(name, "cannot be read");
+}
+
+unsigned long long Hdf5Reader::rows(const std::string& name) const {
+  const Quiet quiet;
+  const Hdf5Handle set(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!set.valid()) damaged(name, "is missing");
+  const Hdf5Handle space(H5Dget_space(set), H5Sclose);
+  Hdf5Shape shape(static_cast<std::size_t>(std::max(1, H5Sget_simple_extent_ndims(space))), 0);
+  H5Sget_simple_extent_dims(space, shape.data(), nullptr);
+  return shape[0];
 }
 
 std::string Hdf5Reader::read_text(const std::string& name) const {

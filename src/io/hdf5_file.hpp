@@ -1,5 +1,6 @@
 #pragma once
 // As much of HDF5 as a snapshot needs: datasets of numbers with a unit, texts, and one-line errors.
+#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -34,6 +35,9 @@ template <class T>
 Hdf5Id hdf5_type();
 
 using Hdf5Shape = std::vector<unsigned long long>;  ///< empty: a single number
+
+/// Some rows of an array, in this order: {first, how many} each.
+using Hdf5Rows = std::vector<std::array<unsigned long long, 2>>;
 
 /// A file that is written once, from empty. Groups in dataset names ("grains/radius") are made as needed.
 class Hdf5Writer {
@@ -72,6 +76,24 @@ class Hdf5Reader {
     read(set, name, hdf5_type<T>(), data.data());
     return data;
   }
+  /// The same of some rows only (first index); nothing else is read. `shape` becomes that of what was read.
+  template <class T>
+  std::vector<T> read_rows(const std::string& name, const Hdf5Rows& rows, Hdf5Shape& shape) const {
+    const Hdf5Handle set = open(name, hdf5_type<T>(), shape);
+    std::size_t width = 1, count = 0;
+    for (std::size_t k = 1; k < shape.size(); ++k) width *= shape[k];
+    for (const auto& run : rows) count += run[1];
+    std::vector<T> data(width * count);
+    T* next = data.data();
+    for (const auto& run : rows) {
+      read_run(set, name, hdf5_type<T>(), shape, run, next);
+      next += width * run[1];
+    }
+    shape.at(0) = count;
+    return data;
+  }
+  /// Number of rows of an array.
+  unsigned long long rows(const std::string& name) const;
   std::string read_text(const std::string& name) const;
   /// Throws InputError "path: is damaged: … of dataset name".
   [[noreturn]] void damaged(const std::string& name, const std::string& fault) const;
@@ -79,6 +101,8 @@ class Hdf5Reader {
  private:
   Hdf5Handle open(const std::string& name, Hdf5Id type, Hdf5Shape& shape) const;
   void read(const Hdf5Handle& set, const std::string& name, Hdf5Id type, void* data) const;
+  void read_run(const Hdf5Handle& set, const std::string& name, Hdf5Id type, Hdf5Shape shape,
+                const std::array<unsigned long long, 2>& run, void* data) const;
 
   std::string path_;
   Hdf5Handle file_;
