@@ -33,7 +33,7 @@ std::string damping_text(const DampingSpec& d) {
 }
 
 /// How far the lower end of the damped interval is proved: local damping is no linear term.
-const char* damped_claim(const DampingSpec& d) { return d.local > 0 ? "stable as far as measured" : "proved stable"; }
+const char* damped_claim(const DampingSpec& d) { return d.local > 0 ? "stable, as measured" : "proved stable"; }
 
 nlohmann::json damped_json(const TimestepReport& r) {
   if (!r.damped) return nullptr;
@@ -46,6 +46,24 @@ nlohmann::json damped_json(const TimestepReport& r) {
           {"dt_limit_upper", number_or_null(r.damped->dt_limit_upper)},
           {"lower_end_proved", d.local == 0},
           {"methods", {{"lower", r.damped->method_lower}, {"upper", r.damped->method_upper}}}};
+}
+
+nlohmann::json consistent_json(const TimestepReport& r) {
+  if (!r.consistent) return nullptr;
+  const auto& c = *r.consistent;
+  const auto& g = c.spectrum;
+  return {{"contacts", c.contacts},
+          {"sliding", c.sliding},
+          {"asymmetry", c.asymmetry},
+          {"radius_lower", g.radius},
+          {"radius_upper", c.radius_upper},
+          {"largest_real", g.largest_real},
+          {"flutter_pairs", g.flutter},
+          {"flutter_rate_per_s", g.flutter_rate},
+          {"flutter_frequency_Hz", g.flutter_frequency},
+          {"negative_real", g.collapse},
+          {"collapse_rate_per_s", g.collapse_rate},
+          {"counts_are_complete", c.complete}};
 }
 
 }  // namespace
@@ -66,6 +84,21 @@ std::string text_of(const TimestepReport& r) {
   line("contacts",
        fmt::format("{}, coordination {:.2f}, at most {}", r.contacts, s.coordination_mean, s.coordination_max));
   line("mass", fmt::format("{:.4g} … {:.4g} kg", s.mass_min, s.mass_max));
+  const auto consistent_lines = [&] {
+    if (!r.consistent) return;
+    const auto& c = *r.consistent;
+    const auto& g = c.spectrum;
+    const char* how_many = c.complete ? "" : " found at the ends of the spectrum";
+    line("consistent tangent", fmt::format("{} of {} contacts slide; asymmetry {:.2e}", c.sliding, c.contacts, c.asymmetry));
+    line("  spectral radius", fmt::format("{:.6g} 1/s² (proved: at most {:.6g}), 2/√ of it {:.6g} … {:.6g} s", g.radius,
+                                          c.radius_upper, 2 / std::sqrt(c.radius_upper), 2 / std::sqrt(g.radius)));
+    line("  complex pairs", g.flutter == 0 ? fmt::format("none{}", how_many)
+                                           : fmt::format("{}{}; the fastest grows at {:.3g} 1/s, {:.4g} Hz (flutter)",
+                                                         g.flutter, how_many, g.flutter_rate, g.flutter_frequency));
+    line("  negative real", g.collapse == 0 ? fmt::format("none{}", how_many)
+                                            : fmt::format("{}{}; the fastest grows at {:.3g} 1/s (collapse)", g.collapse,
+                                                          how_many, g.collapse_rate));
+  };
   const auto damped_lines = [&] {
     if (!r.damped || !std::isfinite(r.damped->dt_safe)) return;
     line("with damping",
@@ -93,6 +126,7 @@ std::string text_of(const TimestepReport& r) {
     line("  found by stepping", fmt::format("{:.6g} s runs, {:.6g} s blows up   ({} steps)", r.bracket->stable,
                                             r.bracket->unstable, r.bracket->steps));
   damped_lines();
+  consistent_lines();
   line("limiting particle", fmt::format("id {}, radius {:.4g} m, {} contacts, {:.1f} % of the mode", r.limiting_id,
                                         r.limiting_radius, v.coordination, 100 * v.grain_share));
   line("grains in the mode", fmt::format("{:.1f} (participation number)", v.participation));
@@ -118,6 +152,7 @@ nlohmann::json json_of(const TimestepReport& r) {
       {"methods",
        {{"lower", v.method_lower}, {"upper", v.method_upper}, {"products", v.products}, {"residual", v.residual}}},
       {"damped", damped_json(r)},
+      {"consistent", consistent_json(r)},
       {"participation", v.participation},
       {"elapsed_s", r.elapsed}};
   const auto& s = r.summary;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "report/plot.hpp"
+#include "timestep/consistent.hpp"
 #include "timestep/damped_interval.hpp"
 #include "timestep/estimates.hpp"
 #include "timestep/interval.hpp"
@@ -21,6 +22,7 @@ struct TimestepReport {
   StepInterval interval;
   DampingSpec damping;                   ///< in force
   std::optional<DampedInterval> damped;  ///< when there is any
+  std::optional<ConsistentReport> consistent;
   Index limiting_id = no_index;
   double limiting_radius = 0;  ///< [m]
   std::vector<Estimate> estimates;
