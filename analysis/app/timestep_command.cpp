@@ -6,6 +6,7 @@
 
 #include "app/commands.hpp"
 #include "app/packing_input.hpp"
+#include "app/slepc_program.hpp"
 #include "app/timestep_report.hpp"
 #include "assembly/linearise.hpp"
 #include "base/progress.hpp"
@@ -17,7 +18,7 @@ namespace {
 
 struct TimestepFlags {
   PackingFlags packing;
-  std::string figure;
+  std::string figure, linearisation = "elastic", solver = "own";
   bool verify = false;
   double max_speed = Material::unset;
 };
@@ -31,6 +32,8 @@ void draw_figure(const TimestepReport& report, const std::string& file) {
 }
 
 int timestep_command(const TimestepFlags& flags) {
+  const bool consistent = flags.linearisation == "consistent";
+  if (flags.solver == "slepc") become_slepc_program(flags.packing.input, consistent, flags.packing.json);
   check_figure(flags.figure);
   const Snapshot work = load_packing(flags.packing);
 
@@ -44,6 +47,7 @@ int timestep_command(const TimestepFlags& flags) {
   report.interval = step_interval(net);
   report.damping = damping_in_force(work.scene, work.state);
   if (report.damping.any()) report.damped = damped_interval(net, report.damping, report.interval);
+  if (consistent) report.consistent = consistent_report(work.scene, work.state, net);
   const Material& m = work.scene.materials.front();
   const auto known = [](double x) { return std::isnan(x) ? std::nullopt : std::optional<double>(x); };
   report.estimates =
@@ -78,6 +82,11 @@ void add_timestep_command(CLI::App& app, Action& action) {
   add_packing_options(*sub, f->packing);
   sub->add_flag("--verify", f->verify, "bracket the limit by stepping a small perturbation, contacts held");
   sub->add_option("--figure", f->figure, "draw the rules of thumb against the limit (.svg, .png or .pdf)");
+  sub->add_option("--linearisation", f->linearisation,
+                  "elastic: every contact sticks; consistent: the exact tangent of the forces beside it, sliding included")
+      ->check(CLI::IsMember({"elastic", "consistent"}));
+  sub->add_option("--solver", f->solver, "own, or slepc: a snapshot shared among the processes of mpirun")
+      ->check(CLI::IsMember({"own", "slepc"}));
   sub->add_option("--max-speed", f->max_speed, "largest relative speed at a contact, for Hertz's duration [m/s]")
       ->check(CLI::Range(1e-9, 1e9));
   sub->callback([f, &action] { action = [f] { return timestep_command(*f); }; });
