@@ -100,14 +100,17 @@ std::optional<double> stage_share(const State& state, const StageSpec& s) {
   };
   count(static_cast<double>(state.stage_step), s.until_steps);
   count(state.stage_time, s.until_time);
-  count(std::abs(stage_strain(state)[state.dimension == 3 ? 2 : 1]), s.until_axial_strain);
+  count(axial_strain(state), s.until_axial_strain);
+  count(shear_strain(state), s.until_shear_strain);
+  count(static_cast<double>(state.cycle.turns) / 2, s.until_cycles);
   if (share > 1.5) return std::nullopt;
   return std::min(share, 1.0);
 }
 
 double run_share(const Scene& scene, const State& state) {
   const auto counted = [](const StageSpec& s) {
-    return !(std::isnan(s.until_steps) && std::isnan(s.until_time) && std::isnan(s.until_axial_strain)) &&
+    return !(std::isnan(s.until_steps) && std::isnan(s.until_time) && std::isnan(s.until_axial_strain) &&
+             std::isnan(s.until_shear_strain) && std::isnan(s.until_cycles)) &&
            std::isnan(s.until_stress_error) && std::isnan(s.until_unbalanced);
   };
   if (!std::ranges::all_of(scene.stages, counted)) return Progress::unknown;

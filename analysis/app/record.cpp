@@ -16,8 +16,10 @@ namespace {
 
 /// A stage driven by stress alone may run fast: its end is told by equilibrium, or is the user's business.
 bool drives_strain(const StageSpec& stage) {
-  return std::ranges::any_of(
-      stage.control, [](const ComponentControl& c) { return c.kind == ComponentControl::Kind::rate && c.value != 0; });
+  return std::ranges::any_of(stage.control, [](const ComponentControl& c) {
+    using Kind = ComponentControl::Kind;
+    return (c.kind == Kind::rate || c.kind == Kind::inertial) && c.value != 0;
+  });
 }
 
 /// All that the columns of a row are taken from.

@@ -126,9 +126,9 @@ KickSums& KickSums::operator+=(const KickSums& b) {
 
 double drift(State& state, double dt) {
   auto& g = state.grains;
-  const Affine<Double4> l(state.cell.rate);
-  state.cell.deform(dt);
-  state.cell.origin += (state.cell.rate * state.cell.origin) * dt;
+  const Mat3 stretch = state.cell.deform(dt);
+  const Affine<Double4> l(stretch);
+  state.cell.origin += stretch * state.cell.origin;
   const std::size_t chunks = chunks_of(g.size());
   double fastest = 0;
 #pragma omp parallel for schedule(static) reduction(max : fastest) if (chunks >= Contacts::worth_threads)
@@ -137,7 +137,7 @@ double drift(State& state, double dt) {
     for (std::size_t i = k * chunk; i < std::min(g.size(), (k + 1) * chunk); ++i) {
       Double4& x = vector(g.position[i]);
       const Double4 v = vector(g.velocity[i]), square = v * v;
-      Double4 change = (v + l * x) * dt;
+      Double4 change = v * dt + l * x;
       change[3] = 0;
       x += change;
       most = square > most ? square : most;

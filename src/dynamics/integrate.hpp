@@ -10,7 +10,7 @@ struct KickOptions {
   int dimension = 3;
 };
 
-/// x ← x + dt (c + L x), cell and walls with it. Returns a bound of the largest peculiar velocity [m/s].
+/// x ← exp(L dt) x + dt c, cell and walls with it. Returns a bound of the largest peculiar velocity [m/s].
 double drift(State& state, double dt);
 
 /// Largest peculiar displacement since contacts were refreshed [m].

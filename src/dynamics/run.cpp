@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/error.hpp"
 #include "boundary/cell_control.hpp"
@@ -19,8 +21,9 @@ void begin_stage(const Scene& scene, State& state) {
   for (const auto& m : scene.materials) state.friction.push_back(stage.friction.value_or(m.friction));
   state.stage_step = 0;
   state.stage_time = 0;
-  state.stage_cell = state.cell.h;
+  state.cell.strain = state.cell.strain_low = Mat3{};
   state.servo = {};
+  state.cycle = {};
   state.policy = {};
 }
 
@@ -29,12 +32,26 @@ void apply_stage(const Scene& scene, const State& state, Engine& engine) {
   engine.set_local_damping(damping_in_force(scene, state).local);
 }
 
+/// A cycle ends when its quantity is back at the mean after both limits.
+bool cycles_done(const State& state, const StageSpec& s) {
+  const double turns = static_cast<double>(state.cycle.turns);
+  return turns >= 2 * s.until_cycles && cycle_value(state, *s.cycle) >= s.cycle->mean;
+}
+
+bool strained_out(const State& state, const StageSpec& s) {
+  if (!s.cycle) return false;
+  const auto strain = stage_strain(state);
+  return std::ranges::any_of(strain, [&](double e) { return std::abs(e) > s.cycle->largest_strain; });
+}
+
 bool finished(const State& state, const StageSpec& s, const RunStatus& status, bool checked) {
+  if (strained_out(state, s)) return true;
   if (!checked && (given(s.until_stress_error) || given(s.until_unbalanced))) return false;
   if (given(s.until_steps) && static_cast<double>(state.stage_step) < s.until_steps) return false;
   if (given(s.until_time) && state.stage_time < s.until_time) return false;
-  if (given(s.until_axial_strain) && std::abs(stage_strain(state)[state.dimension == 3 ? 2 : 1]) < s.until_axial_strain)
-    return false;
+  if (given(s.until_axial_strain) && axial_strain(state) < s.until_axial_strain) return false;
+  if (given(s.until_shear_strain) && shear_strain(state) < s.until_shear_strain) return false;
+  if (given(s.until_cycles) && !cycles_done(state, s)) return false;
   if (given(s.until_stress_error) && !(status.stress_error < s.until_stress_error)) return false;
   if (given(s.until_unbalanced) && !(status.unbalanced < s.until_unbalanced)) return false;
   return true;
@@ -52,15 +69,16 @@ double record_interval(const StageSpec& s) {
 TallyLevel tally_level(const State& state, const StageSpec& s) {
   if (state.stage_step % 10 == 0 || every(state, record_interval(s)) || every(state, s.until_steps))
     return TallyLevel::works;
-  bool servo = s.mean_stress.has_value() || given(s.record_every_strain);
-  for (const auto& c : s.control) servo = servo || c.kind == ComponentControl::Kind::stress;
-  return servo ? TallyLevel::stress : TallyLevel::none;
+  return needs_stress(s) || given(s.record_every_strain) ? TallyLevel::stress : TallyLevel::none;
 }
 
-/// Whether a row is due: by steps, or by axial strain passing a multiple of the interval.
+/// The strain that rows by strain go by: axial, or the largest shear where that is more.
+double row_strain(const State& state) { return std::max(axial_strain(state), shear_strain(state)); }
+
+/// Whether a row is due: by steps, or by row_strain() passing a multiple of the interval.
 bool due(const State& state, const StageSpec& s, double strain_before) {
   if (given(s.record_every_strain)) {
-    const double now = std::abs(stage_strain(state)[state.dimension == 3 ? 2 : 1]);
+    const double now = row_strain(state);
     if (std::floor(now / s.record_every_strain) != std::floor(strain_before / s.record_every_strain)) return true;
   }
   return every(state, record_interval(s));
@@ -73,18 +91,23 @@ bool run_stages(const Scene& scene, State& state, StepPolicy& policy, const RunO
   if (state.step == 0 && state.stage == 0) begin_stage(scene, state);
   Engine engine(scene, state, scalar);
   apply_stage(scene, state, engine);
-  if (state.step == 0) engine.kick(policy.next_step(state));  // half a kick: velocities move on to dt/2
+  std::optional<CellControl> control(std::in_place, scene.stages[state.stage], state, scene.materials.front().density);
+  if (state.step == 0) {  // half a kick, velocities move on to dt/2; the step is chosen knowing how the cell sets out
+    control->set_rate(state, policy.next_step(state));
+    state.policy = {};
+    engine.kick(policy.next_step(state));
+  }
 
   while (state.stage < scene.stages.size()) {
     const StageSpec& stage = scene.stages[state.stage];
-    const double strain_before = std::abs(stage_strain(state)[state.dimension == 3 ? 2 : 1]);
+    const double strain_before = row_strain(state);
     ++state.stage_step;
     const TallyLevel level = tally_level(state, stage);
     const double taken = state.dt;
     engine.drift();
     state.stage_time += taken;
     engine.respond(policy.next_step(state), level);
-    control_cell(state, stage, taken);
+    control->set_rate(state, taken);
     const bool checked = level == TallyLevel::works;
     if (checked) state.unbalanced = engine.unbalanced_ratio(), state.kinetic = engine.kick_sums().kinetic;
 
@@ -98,12 +121,17 @@ bool run_stages(const Scene& scene, State& state, StepPolicy& policy, const RunO
     if (observer.record && (ends || due(state, stage, strain_before))) observer.record(state, status);
     if (ends) {
       if (observer.stage_end) observer.stage_end(state, stage);
-      if (++state.stage < scene.stages.size()) begin_stage(scene, state), apply_stage(scene, state, engine);
+      if (++state.stage < scene.stages.size()) {
+        begin_stage(scene, state), apply_stage(scene, state, engine);
+        control.emplace(scene.stages[state.stage], state, scene.materials.front().density);
+        control->set_rate(state, taken);  // the cell is not to drift on at the rates of the stage before
+      }
     } else if (static_cast<double>(state.stage_step) >= stage.max_steps) {
+      const TargetMiss missed = worst_target(state, stage);
       throw RunError(fmt::format(
-          "stage \"{}\" has not met its `until` within max_steps = {:.0f}: stress error {:.2e}, unbalanced force "
-          "{:.2e}; is the target possible, max_strain_rate high enough, damping on?",
-          stage.name, stage.max_steps, status.stress_error, status.unbalanced));
+          "stage \"{}\" has not met its `until` within max_steps = {:.0f}: {}{}unbalanced force {:.2e}; is the target "
+          "possible, max_strain_rate high enough, damping on?",
+          stage.name, stage.max_steps, missed.text, missed.text.empty() ? "" : "; ", status.unbalanced));
     }
     if (observer.snapshot && !ends && given(stage.snapshot_every_steps) &&
         std::fmod(static_cast<double>(state.stage_step), stage.snapshot_every_steps) == 0)

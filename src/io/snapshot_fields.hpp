@@ -19,11 +19,13 @@ inline constexpr auto scalar_part = [](auto& quad) -> auto& { return quad.w; };
 
 template <class Archive, class C>
 void visit_cell(Archive& a, C& cell) {
-  auto& [h, h_low, periodic, origin, rate] = cell;
+  auto& [h, h_low, periodic, origin, strain, strain_low, rate] = cell;
   a.value("cell/matrix", "m", h);
   a.value("cell/matrix_lost", "m", h_low);
   a.value("cell/periodic", "-", periodic);
   a.value("cell/origin", "m", origin);
+  a.value("cell/stage_strain", "-", strain);
+  a.value("cell/stage_strain_lost", "-", strain_low);
   a.value("cell/rate", "1/s", rate);
 }
 
@@ -124,7 +126,7 @@ void visit_plan(Archive& a, P& plan) {
 template <class Archive, class S>
 void visit_state(Archive& a, S& state) {
   auto& [dimension, time, step, dt, cell, grains, contacts, list, walls, wall_contacts, virial, stiffness_sum, ledger,
-         friction, stage, stage_step, stage_time, stage_cell, unbalanced, kinetic, policy, servo] = state;
+         friction, stage, stage_step, stage_time, unbalanced, kinetic, policy, servo, cycle] = state;
   a.value("dimension", "-", dimension);
   a.value("time", "s", time);
   a.value("step", "-", step);
@@ -144,9 +146,10 @@ void visit_state(Archive& a, S& state) {
   a.value("stage/number", "-", stage);
   a.value("stage/step", "-", stage_step);
   a.value("stage/time", "s", stage_time);
-  a.value("stage/cell", "m", stage_cell);
   visit_plan(a, policy);
   a.value("stage/servo", "1/s", servo);
+  a.value("stage/direction", "-", cycle.direction);
+  a.value("stage/turns", "-", cycle.turns);
 }
 
 }  // namespace eg

@@ -61,7 +61,9 @@ double driving_rate(const State& state, const StageSpec& stage) {
   for (std::size_t k = 0; k < places.size(); ++k) {
     const double rate = std::abs(state.cell.rate(places[k][0], places[k][1]));
     any = std::max(any, rate);
-    if (stage.control[k].kind == ComponentControl::Kind::rate) driven = std::max(driven, rate);
+    const auto kind = stage.control[k].kind;
+    if (kind == ComponentControl::Kind::rate || kind == ComponentControl::Kind::inertial)
+      driven = std::max(driven, rate);
   }
   return driven > 0 ? driven : any;
 }

@@ -11,9 +11,10 @@ namespace {
 
 constexpr std::uint64_t sort_period = 32;  // builds between spatial sorts; counted in the state, so resumed runs agree
 
-/// Moves every grain into the cell; images of listed contacts change with it.
+/// Straightens a cell that has been sheared far and moves every grain into it; images of listed contacts change along.
 void wrap(State& state) {
   if (!state.cell.any_periodic()) return;
+  const auto leaning = state.cell.straighten();
   auto& grains = state.grains;
   std::vector<std::array<std::int8_t, 3>> moved(grains.size());
   const Mat3 inv = inverse(state.cell.h);
@@ -33,7 +34,7 @@ void wrap(State& state) {
   auto& contacts = state.contacts;
   for (std::size_t c = 0; c < contacts.image.size(); ++c) {
     if (contacts.is_padding(c)) continue;
-    auto s = Cell::steps(contacts.image[c]);
+    auto s = Cell::renamed(Cell::steps(contacts.image[c]), leaning);
     for (std::size_t k = 0; k < 3; ++k)  // the branch stays: x_j + H s − x_i with x' = x − H w
       s[k] = std::clamp(s[k] + moved[contacts.j[c]][k] - moved[contacts.i[c]][k], -1, 1);
     contacts.image[c] = Cell::code(s[0], s[1], s[2]);

@@ -117,7 +117,6 @@ State make_state(const Scene& scene, const Packing& packing) {
   State state;
   state.dimension = scene.dimension;
   state.cell = make_cell(scene, packing);
-  state.stage_cell = state.cell.h;
   state.grains = make_grains(scene, packing, state.cell);
   state.walls = make_walls(scene, packing);
   for (const auto& material : scene.materials) state.friction.push_back(material.friction);

@@ -15,8 +15,10 @@ struct Cell {
   Mat3 h = Mat3::identity();  ///< columns a, b, c [m]; h(1,0) = h(2,0) = h(2,1) = 0
   Mat3 h_low;                 ///< what h has lost to round-off so far (compensated sum), see deform()
   std::array<bool, 3> periodic{false, false, false};
-  Vec3 origin;  ///< lower corner [m]
-  Mat3 rate;    ///< velocity gradient L [1/s], upper triangular, tension positive
+  Vec3 origin;      ///< lower corner [m]
+  Mat3 strain;      ///< ∫ L dt since the stage began [-]: logarithmic along the axes, tension positive
+  Mat3 strain_low;  ///< its compensation
+  Mat3 rate;        ///< velocity gradient L [1/s], upper triangular, tension positive
 
   bool any_periodic() const { return periodic[0] || periodic[1] || periodic[2]; }
   /// Code of the image displaced by (s0, s1, s2) edges, each −1, 0 or 1.
@@ -32,8 +34,16 @@ struct Cell {
   double width(int k) const;
   /// Fractional coordinates of a point.
   Vec3 fractional(const Vec3& x) const { return inverse(h) * (x - origin); }
-  /// H ← H + dt L H, compensated, so that strain increments far below round-off of H still add up.
-  void deform(double dt);
+  /// H ← exp(L dt) H, compensated, so that strain increments far below round-off of H still add up and a rate
+  /// without trace keeps the volume. Returns exp(L dt) − 1, by which points move with the cell.
+  Mat3 deform(double dt);
+  /// Replaces edges by equivalent ones of the same lattice so that no edge leans by more than half of another: b − n_xy
+  /// a and c − n_yz b − n_xz a. Returns {n_yz, n_xz, n_xy}; images change with them, see renamed().
+  std::array<int, 3> straighten();
+  /// Steps of an image along the edges after straighten() has returned `n`.
+  static std::array<int, 3> renamed(const std::array<int, 3>& steps, const std::array<int, 3>& n) {
+    return {steps[0] + steps[1] * n[2] + steps[2] * (n[1] + n[0] * n[2]), steps[1] + steps[2] * n[0], steps[2]};
+  }
 };
 
 }  // namespace eg

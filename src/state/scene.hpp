@@ -82,9 +82,28 @@ struct TimestepSpec {
 
 /// How one strain component of the periodic cell is driven.
 struct ComponentControl {
-  enum class Kind { rate, stress };
+  enum class Kind { rate, inertial, stress, free };
   Kind kind = Kind::rate;
-  double value = 0;  ///< strain rate [1/s] or stress [Pa] (2D: N/m), compression positive
+  /// rate: strain rate [1/s]; inertial: the rate's inertial number I = ε̇ d50 √(ρ/p) [-], its sign that of the rate;
+  /// stress: target [Pa] (2D: N/m); free: not read, conditions of StageSpec::hold decide. Compression positive.
+  double value = 0;
+};
+
+/// Σ coefficient · strain rate = value [1/s], or Σ coefficient · stress = value [Pa] (2D: N/m).
+struct CellCondition {
+  enum class Quantity { rate, stress };
+  Quantity quantity = Quantity::rate;
+  std::array<double, 6> coefficient{};  ///< of x y z yz xz xy
+  double value = 0;
+};
+
+/// Back and forth between two limits: the rates of the stage turn around there.
+struct CycleSpec {
+  enum class Quantity { strain, stress };
+  Quantity quantity = Quantity::strain;
+  std::array<double, 6> coefficient{};  ///< of x y z yz xz xy; the quantity is their weighted sum
+  double mean = 0, amplitude = 0;       ///< [-] or [Pa] (2D: N/m)
+  double largest_strain = std::numeric_limits<double>::infinity();  ///< of any component: the stage ends there [-]
 };
 
 /// [[stage]]
@@ -94,16 +113,19 @@ struct StageSpec {
   std::optional<double> local_damping;  ///< replaces damping.local during this stage
   // strain: axes x, y, z, then yz, xz, xy (engineering shear rate, for a cell with tilt)
   std::array<ComponentControl, 6> control{};
-  std::optional<double> mean_stress;  ///< p' held constant through the components listed in `mean_axes` [Pa]
-  std::array<bool, 3> mean_axes{false, false, false};
-  double max_strain_rate = 10;  ///< cap of every servoed component [1/s]
+  std::vector<CellCondition> hold;  ///< as many as components are free
+  std::optional<CycleSpec> cycle;
+  double max_strain_rate =
+      not_given;  ///< cap of what answers stresses [1/s]; default: 10, or ten times the rates driven
   // until (all that are given must hold; time/steps/strain end the stage by themselves)
   double until_stress_error = not_given;  ///< |σ − target|/target [-]
   double until_unbalanced = not_given;    ///< mean unbalanced force over mean contact force [-]
   double until_time = not_given;          ///< [s], since the stage began
   double until_steps = not_given;         ///< since the stage began
   double until_axial_strain = not_given;  ///< |εz| (2D: |εy|) since the stage began [-]
-  double max_steps = 5e6;                 ///< a stage that has not ended by then stops the run with an error
+  double until_shear_strain = not_given;  ///< largest |γ| since the stage began [-]
+  double until_cycles = not_given;
+  double max_steps = 5e6;  ///< a stage that has not ended by then stops the run with an error
   // record
   double record_every_steps = not_given;  ///< default: 1000, unless by strain
   double record_every_strain = not_given;

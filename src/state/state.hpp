@@ -83,6 +83,12 @@ struct StepPlan {
   std::uint64_t horizon = 0;  ///< steps an evaluation looks ahead
 };
 
+/// Where a stage with a cycle stands.
+struct CycleProgress {
+  double direction = 1;     ///< 1 or −1: sense of the stage's rates
+  std::uint64_t turns = 0;  ///< limits reached so far
+};
+
 struct State {
   int dimension = 3;
   double time = 0;  ///< [s]
@@ -101,11 +107,11 @@ struct State {
   std::size_t stage = 0;         ///< stage under way, and the state it began from
   std::uint64_t stage_step = 0;
   double stage_time = 0;
-  Mat3 stage_cell;        ///< cell matrix when the stage began
   double unbalanced = 1;  ///< mean net force over mean contact force at the last check [-]
   double kinetic = 0;     ///< kinetic energy at the last check [J]
   StepPlan policy;
-  std::array<double, 6> servo{};  ///< integral part of the cell controller [1/s]
+  std::array<double, 6> servo{};  ///< integral part of the cell controller, an equation each [1/s]
+  CycleProgress cycle;
 };
 
 }  // namespace eg

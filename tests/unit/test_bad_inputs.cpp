@@ -210,9 +210,35 @@ const std::vector<SceneCase> scene_cases{
      "s.toml:19: stage[1].hold.equal[1] = \"w\" must be one of \"x\", \"y\", \"z\"; did you mean \"x\"?"},
     {19, "hold = { mean_stress = 1e5, equal = [] }",
      "s.toml:19: stage[1].hold.equal must name at least one axis; for example equal = [\"x\", \"y\"]"},
+    {19, "hold = { mean_stress = 1e5 }",
+     "s.toml:19: stage[1].hold makes 1 condition for 3 components that nothing else drives (x, y, z); there must be "
+     "one "
+     "for each: add conditions, or drive components by stress or strain_rate"},
+    {19, "stress = { isotropic = 1e5 }\nhold = { deviator = 0 }",
+     "s.toml:20: stage[1].hold makes 1 condition for 0 components that nothing else drives (none); there must be one "
+     "for "
+     "each: add conditions, or drive components by stress or strain_rate"},
+    {19,
+     "hold = { mean_stress = 1e5, deviator = 0, combinations = [{ stress = { x = 1, y = 1, z = 1 }, value = 3e5 }] }",
+     "s.toml:19: stage[1].hold holds conditions that contradict each other or say the same twice; each must add "
+     "something that the others leave open"},
+    {19, "hold = {}",
+     "s.toml:19: stage[1].hold names no condition; give mean_stress, deviator, b, volume_rate, equal or combinations"},
+    {19, "hold = { combinations = [{ value = 0 }] }",
+     "s.toml:19: stage[1].hold.combinations[1] must weigh either stresses or strain rates; for example { stress = { z "
+     "= "
+     "1, x = -2 }, value = 0 }"},
+    {19, "strain_rate = { inertial_number = 1e-3 }",
+     "s.toml:19: stage[1].strain_rate.inertial_number = 0.001 needs an axis beside it; for example { axis = \"z\", "
+     "inertial_number = 1e-3 }"},
+    {19, "strain_rate = { z = 1 }\ncycle = { amplitude = 1e3 }",
+     "s.toml:20: stage[1].cycle must run between limits of either a stress or a strain; for example { stress = "
+     "\"deviator\", mean = 0, amplitude = 20e3 }"},
+    {20, "until = { cycles = 3 }",
+     "s.toml:20: stage[1].until.cycles = 3 needs a cycle to count; add cycle = { … } to the stage"},
     {20, "until = {}",
      "s.toml:20: stage[1].until names no condition; give at least one of stress_error, unbalanced_force, time, steps, "
-     "axial_strain"},
+     "axial_strain, shear_strain, cycles"},
     {19, "",
      "s.toml:20: stage[1].until.stress_error = 0.001 needs a stress that is aimed at; add stress or hold to the "
      "stage"},

@@ -119,8 +119,12 @@ TEST(SceneFile, ReadsStages) {
   EXPECT_EQ(shear.control[2].kind, Kind::rate);
   EXPECT_EQ(shear.control[2].value, 1e-2);
   EXPECT_EQ(shear.control[3].value, -2e-3);
-  EXPECT_EQ(shear.mean_stress, 100e3);
-  EXPECT_EQ(shear.mean_axes, (std::array{true, true, false}));
+  EXPECT_EQ(shear.control[0].kind, Kind::free);
+  EXPECT_EQ(shear.control[1].kind, Kind::free);
+  ASSERT_EQ(shear.hold.size(), 2u);
+  EXPECT_EQ(shear.hold[0].value, 100e3);
+  EXPECT_EQ(shear.hold[0].coefficient[2], 1. / 3);
+  EXPECT_EQ(shear.hold[1].coefficient, (std::array<double, 6>{1, -1, 0, 0, 0, 0}));
   EXPECT_EQ(shear.max_strain_rate, 5);
   EXPECT_EQ(shear.until_axial_strain, 0.5);
   EXPECT_EQ(shear.until_steps, 1e6);

@@ -140,7 +140,7 @@ TEST(Snapshot, StateComesBackBitForBit) {
   EXPECT_EQ(read.state.contacts.history.size(), state.contacts.history.size());
 
   auto other = state;  // the comparison sees every bit
-  other.stage_cell(2, 2) = std::nextafter(other.stage_cell(2, 2), 9.0);
+  other.cell.strain(2, 2) = std::nextafter(other.cell.strain(2, 2), 9.0);
   EXPECT_NE(bytes_of(other), bytes_of(state));
 }
 

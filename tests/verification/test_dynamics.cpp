@@ -105,9 +105,10 @@ State pressed(const Scene& scene, double dt) {
   Engine engine(scene, state);
   engine.set_local_damping(0.7);
   engine.kick(dt);
+  const CellControl control(stage, state, scene.materials[0].density);
   do {
     engine.step(dt);
-    control_cell(state, stage, dt);
+    control.set_rate(state, dt);
   } while (stress_error(state, stage) > 1e-4 || engine.unbalanced_ratio() > 1e-4);
   return state;
 }
