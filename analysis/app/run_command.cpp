@@ -63,12 +63,22 @@ class Recorder {
   void row(const State& state) {
     const Homogenised h = homogenise(scene_, state);
     history_.append(state.step, history_row(scene_, state, h));
-    for (auto& line : broken_assumptions(scene_, state, h)) {
-      const std::string kind = line.substr(0, line.find(' '));  // one line a kind of trouble, the first one seen
-      if (seen_.contains(kind)) continue;
-      fmt::print(stderr, "warning: step {}: {}\n", state.step, line);
-      seen_[kind] = fmt::format("step {}: {}", state.step, line);
-    }
+    for (const auto& line : broken_assumptions(scene_, state, h))
+      warn(state, line.substr(0, line.find(' ')), line);
+  }
+  /// A line a kind of trouble, the first one seen.
+  void warn(const State& state, const std::string& kind, const std::string& line) {
+    if (seen_.contains(kind)) return;
+    fmt::print(stderr, "warning: step {}: {}\n", state.step, line);
+    seen_[kind] = fmt::format("step {}: {}", state.step, line);
+  }
+  void stage_end(const State& state, const StageSpec& stage) {
+    const TargetMiss miss = worst_target(state, stage);
+    if (miss.relative > 0.01)
+      warn(state, "target of " + stage.name,
+           fmt::format("stage \"{}\" ends {:.1f} % off its target: {}; raise max_strain_rate, drive slower, or the "
+                       "packing cannot bear it",
+                       stage.name, 100 * miss.relative, miss.text));
   }
   std::string snapshot(const State& state, const std::string& name) const {
     const std::string path = (folder_ / (name + ".h5")).string();
@@ -175,6 +185,7 @@ int run_command(const RunFlags& flags) {
     progress.clear();
     fmt::print(stderr, "stage \"{}\" done: step {}, mean stress {:.6g} {}\n", stage.name, s.step, mean_stress(s),
                scene.dimension == 3 ? "Pa" : "N/m");
+    recorder.stage_end(s, stage);
   };
   observer.stop = interrupted;
   bool complete = false;
