@@ -1,5 +1,7 @@
 #include "dynamics/engine.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
 
 #include "search/neighbours.hpp"
@@ -68,8 +70,10 @@ void Engine::drift() {
   const double dt = state_.dt;
   travelled_ += (travelled_ * norm(state_.cell.rate) + eg::drift(state_, dt)) * dt;
   if (used_skin(state_, travelled_) > 0.999 * state_.list.contact_skin) {  // rounding aside, the bound tells
+    const double begin = omp_get_wtime();
     travelled_ = displacement(state_);
     if (update_lists(state_, travelled_)) refresh_workspace(), travelled_ = 0;
+    upkeep_ += omp_get_wtime() - begin;
   }
   last_dt_ = dt;
   state_.time += dt;

@@ -30,6 +30,7 @@ class Engine {
   const Tally& tally() const { return tally_; }  ///< of the last move with tally
   const KickSums& kick_sums() const { return sums_; }
   const ForceWorkspace& workspace() const { return work_; }
+  double upkeep() const { return upkeep_; }  ///< time spent on lists so far [s]
   /// Mean net force of grains over mean contact force in the last step with tally [-]; 1 without contacts.
   double unbalanced_ratio() const;
   /// Forces at the present positions after a motion of length dt (no drift, no list check): for tests and
@@ -51,6 +52,7 @@ class Engine {
   KickSums sums_;
   TallyLevel level_ = TallyLevel::none;
   double last_dt_ = 0;
+  double upkeep_ = 0;
   double travelled_ = 1e300;  ///< bound of displacement() [m]; the true one is worked out when the bound calls for it
 };
 
