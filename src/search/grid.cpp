@@ -8,6 +8,7 @@
 #include <span>
 
 #include "base/error.hpp"
+#include "base/number.hpp"
 
 namespace eg {
 namespace {
@@ -40,7 +41,9 @@ Frame make_frame(const Grains& grains, const Cell& cell, double least_extent) {
 struct Level {
   double largest = 0;  // radius [m]
   std::array<int, 3> n{1, 1, 1};
+  bool wide = true;                 // along periodic directions the cells on both sides of one differ
   std::vector<Index> begin, items;  // grains of a cell: items[begin[c] … begin[c+1])
+  std::vector<double> x, y, z, r;   // of the items in this order, and eight more that nothing reaches
 
   std::size_t cell(int a, int b, int c) const {
     return (static_cast<std::size_t>(c) * static_cast<std::size_t>(n[1]) + static_cast<std::size_t>(b)) *
@@ -66,6 +69,7 @@ void fill(Level& level, const Frame& f, const Grains& grains, std::span<const In
   for (std::size_t k = 0; k < 3; ++k) level.n[k] = static_cast<int>(std::clamp(f.width[k] / size, 1.0, 1024.0));
   while (1.0 * level.n[0] * level.n[1] * level.n[2] > 4.0 * static_cast<double>(members.size()) + 64)
     *std::max_element(level.n.begin(), level.n.end()) /= 2;  // sparse clouds need no finer grid than they have grains
+  for (std::size_t k = 0; k < 3; ++k) level.wide = level.wide && (!f.periodic[k] || level.n[k] >= 3);
   level.begin.assign(level.cell(0, 0, level.n[2]) + 1, 0);
   std::vector<std::size_t> where(members.size());
   for (std::size_t m = 0; m < members.size(); ++m) {
@@ -77,28 +81,76 @@ void fill(Level& level, const Frame& f, const Grains& grains, std::span<const In
   level.items.resize(members.size());
   auto next = level.begin;
   for (std::size_t m = 0; m < members.size(); ++m) level.items[next[where[m]]++] = members[m];
+  for (auto* v : {&level.x, &level.y, &level.z}) v->assign(members.size() + Batch::lanes, 1e150);
+  level.r.assign(members.size() + Batch::lanes, 0);
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    const Quad& p = grains.position[level.items[m]];
+    level.x[m] = p.x, level.y[m] = p.y, level.z[m] = p.z, level.r[m] = p.w;
+  }
 }
 
-/// Calls f(cell number, image code) for the cells around a place; every (cell, image) once.
+/// A range of cells along x, begin ≤ a < end, of one row of cells, seen in one image.
+struct Run {
+  int begin, end, row, layer;
+  std::uint8_t image;
+  enum class Side {
+    before,
+    middle,
+    after
+  } side;  ///< of the cell asked about; of two cells one sees the other after it
+};
+
+/// Neighbours p − 1, p, p + 1 of a cell along one axis, each with the image that it lies in.
+struct Near {
+  std::array<int, 3> index{}, step{}, offset{};
+  std::size_t count = 0;
+  Near(const Frame& frame, const Level& level, const Place& p, std::size_t axis) {
+    for (int o = -1; o <= 1; ++o) {
+      int q = p[axis] + o, s = 0;
+      if (q < 0 || q >= level.n[axis]) {
+        if (!frame.periodic[axis]) continue;
+        s = q < 0 ? -1 : 1;
+        q -= s * level.n[axis];
+      }
+      index[count] = q, step[count] = s, offset[count++] = o;
+    }
+  }
+};
+
+/// Calls f(run) for the cells around a place, the middle one apart; every (cell, image) once. Cells that follow each
+/// other in one image go together.
 template <class F>
 void around(const Frame& frame, const Level& level, const Place& p, F&& f) {
-  std::array<std::array<int, 3>, 3> index{}, step{};
-  std::array<int, 3> count{};
-  for (std::size_t k = 0; k < 3; ++k)
-    for (int o = -1; o <= 1; ++o) {
-      int q = p[k] + o, s = 0;
-      if (q < 0 || q >= level.n[k]) {
-        if (!frame.periodic[k]) continue;
-        s = q < 0 ? -1 : 1;
-        q -= s * level.n[k];
+  const Near x(frame, level, p, 0), y(frame, level, p, 1), z(frame, level, p, 2);
+  for (std::size_t c = 0; c < z.count; ++c)
+    for (std::size_t b = 0; b < y.count; ++b) {
+      const int rank = 3 * z.offset[c] + y.offset[b];
+      for (std::size_t a = 0; a < x.count;) {
+        std::size_t end = a + 1;
+        if (rank != 0)
+          while (end < x.count && x.step[end] == x.step[a]) ++end;
+        const int place = rank != 0 ? rank : x.offset[a];
+        f(Run{x.index[a], x.index[end - 1] + 1, y.index[b], z.index[c], Cell::code(x.step[a], y.step[b], z.step[c]),
+              place < 0   ? Run::Side::before
+              : place > 0 ? Run::Side::after
+                          : Run::Side::middle});
+        a = end;
       }
-      const auto c = static_cast<std::size_t>(count[k]++);
-      index[k][c] = q, step[k][c] = s;
     }
-  for (std::size_t c = 0; c < static_cast<std::size_t>(count[2]); ++c)
-    for (std::size_t b = 0; b < static_cast<std::size_t>(count[1]); ++b)
-      for (std::size_t a = 0; a < static_cast<std::size_t>(count[0]); ++a)
-        f(level.cell(index[0][a], index[1][b], index[2][c]), Cell::code(step[0][a], step[1][b], step[2][c]));
+}
+
+/// Calls f(grain) for the grains of a run whose surfaces lie within `reach` of x.
+template <class F>
+void visit(const Level& level, const Run& run, const Vec3& x, double reach, F&& f) {
+  const std::size_t end = level.begin[level.cell(run.end - 1, run.row, run.layer) + 1];
+  for (std::size_t m = level.begin[level.cell(run.begin, run.row, run.layer)]; m < end; m += Batch::lanes) {
+    const Batch dx = load_lanes(&level.x[m]) - Batch(x.x), dy = load_lanes(&level.y[m]) - Batch(x.y),
+                dz = load_lanes(&level.z[m]) - Batch(x.z), far = load_lanes(&level.r[m]) + Batch(reach);
+    const Mask near = dx * dx + dy * dy + dz * dz < far * far;
+    if (!any(near)) continue;
+    for (std::size_t k = 0; k < std::min(Batch::lanes, end - m); ++k)
+      if (lane(near, k)) f(level.items[m + k]);
+  }
 }
 
 }  // namespace
@@ -140,20 +192,23 @@ std::vector<NearPair> find_pairs(const Grains& grains, const Cell& cell, double 
     for (std::size_t i = k * chunk; i < std::min(grains.size(), (k + 1) * chunk); ++i) {
       const Quad& a = grains.position[i];
       const auto own = class_of(a.w);
+      const auto take = [&](Index j, std::uint8_t image) {
+        const auto ii = static_cast<Index>(i);
+        found[k].push_back(ii <= j ? NearPair{ii, j, image} : NearPair{j, ii, static_cast<std::uint8_t>(26 - image)});
+      };
       for (std::size_t l = own; l < levels.size(); ++l) {
+        const Level& level = levels[l];
         if (members[l].empty()) continue;
-        around(frame, levels[l], place(frame, levels[l], a.vec()), [&](std::size_t box, std::uint8_t image) {
-          for (Index m = levels[l].begin[box]; m < levels[l].begin[box + 1]; ++m) {
-            const Index j = levels[l].items[m];
-            if (l == own && (j < i || (j == i && image <= Cell::home))) continue;  // each pair once
-            const Quad& b = grains.position[j];
-            const Vec3 branch = b.vec() + shift[image] - a.vec();
-            const double reach = a.w + b.w + skin;
-            if (dot(branch, branch) >= reach * reach) continue;
-            const auto ii = static_cast<Index>(i);
-            found[k].push_back(ii <= j ? NearPair{ii, j, image}
-                                       : NearPair{j, ii, static_cast<std::uint8_t>(26 - image)});
-          }
+        around(frame, level, place(frame, level, a.vec()), [&](const Run& run) {
+          // Each pair once: of one level, in the cell that comes first, or, where cells are too few for that to mean
+          // anything, from the grain with the lower number; of two levels, from the smaller grain.
+          const bool halved = l == own && level.wide;
+          if (halved && run.side == Run::Side::before) return;
+          const bool lower = l == own && !(halved && run.side == Run::Side::after);
+          visit(level, run, a.vec() - shift[run.image], a.w + skin, [&](Index j) {
+            if (lower && (j < i || (j == i && run.image <= Cell::home))) return;
+            take(j, run.image);
+          });
         });
       }
     }

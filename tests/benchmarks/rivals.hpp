@@ -74,7 +74,8 @@ class Lammps {
 
   /// Time that LAMMPS reports for its last run [s]; negative when it does not run.
   double seconds() const {
-    FILE* pipe = popen(("OMP_NUM_THREADS=1 lmp -in " + (folder_ / "in.step").string() + " -log none 2>/dev/null").c_str(), "r");
+    FILE* pipe =
+        popen(("OMP_NUM_THREADS=1 lmp -in " + (folder_ / "in.step").string() + " -log none 2>/dev/null").c_str(), "r");
     if (!pipe) return -1;
     double seconds = -1;
     for (char line[512]; std::fgets(line, sizeof line, pipe);) std::sscanf(line, "Loop time of %lf", &seconds);

@@ -84,7 +84,8 @@ void slope() {
                      fmt::format("neighbor 0.1 bin\npair_style gran/hooke/history 2000 NULL 50 NULL 0.5 0\n"
                                  "pair_coeff * *\ntimestep {}\nfix 1 all gravity 1.0 chute 26.0\nfix 2 all nve/sphere\n"
                                  "fix 3 all wall/gran hooke/history 2000 NULL 50 NULL 0.5 0 zplane 0.0 NULL\n"
-                                 "run 10\nrun {}\n", dt, steps));
+                                 "run 10\nrun {}\n",
+                                 dt, steps));
   Spread theirs;
   Measured ours{};
   for (int k = 0; k < 3; ++k) {
