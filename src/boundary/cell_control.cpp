@@ -82,8 +82,10 @@ void turn_at_limits(State& state, const CycleSpec& cycle) {
 
 Components stress_components(const State& state) {
   Components s{};
-  for (std::size_t k = 0; k < 6; ++k)
-    s[k] = -sign_of(k) * state.virial(places[k].row, places[k].column) / state.cell.volume();
+  for (std::size_t k = 0; k < 6; ++k) {  // grains that turn faster and faster make it unsymmetric
+    const auto [row, column] = places[k];
+    s[k] = -0.5 * sign_of(k) * (state.virial(row, column) + state.virial(column, row)) / state.cell.volume();
+  }
   return s;
 }
 
