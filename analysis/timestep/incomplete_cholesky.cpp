@@ -15,7 +15,7 @@ constexpr double reserve = 1e-6;  // of σ, for round-off
 
 class Factorisation {
  public:
-  Factorisation(const Sides& sides, std::span<const double> t, std::span<const Index> patch, double sigma, double drop);
+  Factorisation(const WeightedContacts& contacts, std::span<const Index> patch, double sigma, double drop);
   IncompleteCholesky run();
 
  private:
@@ -26,7 +26,7 @@ class Factorisation {
   };
   using Links = std::vector<Link>;
 
-  void assemble_diagonal(std::size_t k, std::span<const double> t, std::span<const Index> place, double sigma);
+  void assemble_diagonal(std::size_t k, std::span<const Index> place, double sigma);
   void assemble_links(std::size_t k, std::span<const Index> place);
   bool eliminate(std::size_t k);
   bool drop(std::size_t a, std::size_t b, double size);
@@ -40,6 +40,7 @@ class Factorisation {
   }
   double room(std::size_t k) const { return diagonal_[k].diagonal().minCoeff(); }
 
+  const WeightedContacts& contacts_;
   const Sides& sides_;
   std::span<const Index> patch_;
   double sigma_, drop_;
@@ -51,9 +52,9 @@ class Factorisation {
   IncompleteCholesky result_;
 };
 
-Factorisation::Factorisation(const Sides& sides, std::span<const double> t, std::span<const Index> patch, double sigma,
-                             double drop)
-    : sides_(sides),
+Factorisation::Factorisation(const WeightedContacts& contacts, std::span<const Index> patch, double sigma, double drop)
+    : contacts_(contacts),
+      sides_(contacts.sides()),
       patch_(patch),
       sigma_(sigma),
       drop_(drop),
@@ -61,22 +62,19 @@ Factorisation::Factorisation(const Sides& sides, std::span<const double> t, std:
       links_(patch.size()),
       updates_(patch.size(), 0),
       drops_(patch.size(), 0) {
-  const auto place = places(sides, patch);
+  const auto place = places(sides_, patch);
   for (std::size_t k = 0; k < patch.size(); ++k) {
-    assemble_diagonal(k, t, place, sigma);
+    assemble_diagonal(k, place, sigma);
     assemble_links(k, place);
   }
 }
 
-void Factorisation::assemble_diagonal(std::size_t k, std::span<const double> t, std::span<const Index> place,
-                                      double sigma) {
+void Factorisation::assemble_diagonal(std::size_t k, std::span<const Index> place, double sigma) {
   const auto& springs = sides_.network().springs;
   const Block block = sides_.block(patch_[k], [&](const Side& side) -> Eigen::Matrix3d {
     const Spring& s = springs[side.spring];
-    double w = 1;
-    if (side.role == Side::Role::first && place[s.j] == no_index) w += t[side.spring];
-    if (side.role == Side::Role::second && place[s.i] == no_index) w += 1 / t[side.spring];
-    return w * contact_stiffness(s);
+    const bool inside = side.role != Side::Role::alone && place[s.i] != no_index && place[s.j] != no_index;
+    return inside ? contact_stiffness(s) : contacts_.weighted_stiffness(side);
   });
   diagonal_[k] = sigma * (1 - reserve) * Block::Identity() - block;
   most_terms_ = std::max(most_terms_, sides_.of(patch_[k]).size());
@@ -167,9 +165,9 @@ IncompleteCholesky Factorisation::run() {
 
 }  // namespace
 
-IncompleteCholesky factorise_below(const Sides& sides, std::span<const double> t, std::span<const Index> patch,
-                                   double sigma, double drop) {
-  return Factorisation(sides, t, patch, sigma, drop).run();
+IncompleteCholesky factorise_below(const WeightedContacts& contacts, std::span<const Index> patch, double sigma,
+                                   double drop) {
+  return Factorisation(contacts, patch, sigma, drop).run();
 }
 
 }  // namespace eg

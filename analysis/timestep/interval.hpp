@@ -12,7 +12,8 @@ namespace eg {
 struct IntervalOptions {
   std::size_t dense_limit = 600;  ///< degrees of freedom up to which the whole spectrum is computed; 0: never
   double tolerance = 1e-4;        ///< residual of the Ritz pair over its value
-  double width = 1e-3;            ///< relative width in λ at which the upper bound is good enough
+  double width = 1e-3;            ///< relative width in λ that is wanted of the interval …
+  double loose = 1e-2;            ///< … and the one put up with where the first would cost too much
   std::uint64_t seed = 1;         ///< of the random start vector
 };
 

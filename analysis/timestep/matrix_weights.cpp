@@ -142,4 +142,36 @@ void WeightedContacts::sweep(int squarings) {
   }
 }
 
+void WeightedContacts::update(BlockRanges& ranges) const {
+  const auto size = static_cast<std::ptrdiff_t>(grains_.size());
+#pragma omp parallel for schedule(static) if (size > 256)
+  for (std::ptrdiff_t k = 0; k < size; ++k) {
+    const Index g = grains_[static_cast<std::size_t>(k)];
+    const Block sum = block(g);
+    BlockPower power(sum);
+    for (int s = 0; s < 5; ++s) power.square();
+    ranges.low[g] = power.trace_ratio(sum);
+    ranges.high[g] = power.trace_root() * (1 + 1e-10);
+  }
+}
+
+SplittingBound WeightedContacts::bound(const BlockRanges& ranges) const {
+  SplittingBound maximum;
+  std::vector<Index> candidates;
+  const double least = ranges.low.empty() ? 0 : *std::max_element(ranges.low.begin(), ranges.low.end());
+  for (std::size_t g = 0; g < sides_.size(); ++g)
+    if (!sides_.of(g).empty() && ranges.high[g] >= least) candidates.push_back(static_cast<Index>(g));
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [&](Index a, Index b) { return ranges.low[a] > ranges.low[b]; });
+  for (const Index g : candidates) {
+    const std::size_t terms = sides_.of(g).size();
+    if (ranges.high[g] < maximum.value) continue;
+    const Block sum = block(g);
+    if (block_is_below(sum, terms, maximum.value)) continue;
+    const double value = block_upper_bound(sum, terms);
+    if (value > maximum.value) maximum.value = value, maximum.grain = g;
+  }
+  return maximum;
+}
+
 }  // namespace eg

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "timestep/sides.hpp"
+#include "timestep/block_ranges.hpp"
 #include "timestep/splitting.hpp"
 
 namespace eg {
@@ -13,11 +13,15 @@ class WeightedContacts {
  public:
   WeightedContacts(const Sides& sides, SplittingWeights weights);
 
+  const Sides& sides() const { return sides_; }
   const SplittingWeights& weights() const { return weights_; }
   void set_weights(SplittingWeights weights);
 
   /// The grains of contacts that have matrices, ascending.
   const std::vector<Index>& matrix_grains() const { return grains_; }
+
+  /// What a side weighs: k^½ (1 + T^±1) k^½, k for one that has nothing to split.
+  Eigen::Matrix3d weighted_stiffness(const Side& side) const;
 
   /// S_i.
   Block block(std::size_t grain) const {
@@ -28,6 +32,13 @@ class WeightedContacts {
   /// that have one keep it.
   void make_matrices(const std::vector<double>& lambda, double hot);
 
+  /// Makes the ranges true for the blocks that have matrices in them; block_ranges() knows the rest.
+  void update(BlockRanges& ranges) const;
+
+  /// The greatest λmax(S_i), round-off included, and whose it is: λmax(M⁻¹K) is not above. Ranges as update() leaves
+  /// them.
+  SplittingBound bound(const BlockRanges& ranges) const;
+
   /// One step of all matrices towards the minimum of Σ tr S_i^(q+1), q = 2^squarings. Stationarity is T A T = B with
   /// A = A_i S_i^q A_iᵀ and B = A_j S_j^q A_jᵀ, so T* = A⁻¹ # B, the geometric mean (Bhatia 2007); ln T moves a
   /// step min(0.3, 2/(q+1)) towards ln T*, because all neighbours move at once.
@@ -37,7 +48,6 @@ class WeightedContacts {
   struct Pair {
     Eigen::Matrix3d first, second;  ///< k^½ W k^½ with W = 1 + T and 1 + T⁻¹
   };
-  Eigen::Matrix3d weighted_stiffness(const Side& side) const;
   void refresh(std::size_t matrix);
 
   const Sides& sides_;

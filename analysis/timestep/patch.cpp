@@ -1,5 +1,6 @@
 #include "timestep/patch.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace eg {
@@ -19,6 +20,16 @@ std::vector<Index> grow_patch(const Sides& sides, std::vector<Index> grains, int
       }
     begin = end;
   }
+  return grains;
+}
+
+std::vector<Index> stiff_patch(const Sides& sides, const BlockRanges& ranges, double sigma, int shells) {
+  std::vector<Index> grains;
+  for (std::size_t g = 0; g < sides.size(); ++g)
+    if (ranges.high[g] >= sigma && !sides.of(g).empty()) grains.push_back(static_cast<Index>(g));
+  grains = grow_patch(sides, std::move(grains), shells);
+  std::sort(grains.begin(), grains.end(),
+            [&](Index a, Index b) { return ranges.low[a] != ranges.low[b] ? ranges.low[a] > ranges.low[b] : a < b; });
   return grains;
 }
 

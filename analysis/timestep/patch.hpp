@@ -3,12 +3,15 @@
 #include <span>
 #include <vector>
 
-#include "timestep/sides.hpp"
+#include "timestep/block_ranges.hpp"
 
 namespace eg {
 
 /// The grains given and those within `shells` contacts of them, in that order, each once.
 std::vector<Index> grow_patch(const Sides& sides, std::vector<Index> grains, int shells);
+
+/// The grains that splitting does not prove to be below sigma, with `shells` shells of neighbours, stiffest first.
+std::vector<Index> stiff_patch(const Sides& sides, const BlockRanges& ranges, double sigma, int shells);
 
 /// The network of these grains alone, in this order, with every other grain held fixed (its contacts become walls). Its
 /// matrix is a principal part of the whole one, so λmax of the patch ≤ λmax (Cauchy's interlacing).

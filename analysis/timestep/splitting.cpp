@@ -4,46 +4,11 @@
 #include <cmath>
 #include <numeric>
 
-#include "timestep/block_power.hpp"
 #include "timestep/matrix_weights.hpp"
 #include "timestep/scalar_weights.hpp"
 
 namespace eg {
 namespace {
-
-/// Ranges of the blocks that have matrices in them; block_ranges() knows the rest.
-void matrix_ranges(const WeightedContacts& contacts, BlockRanges& ranges) {
-  const std::vector<Index> grains = contacts.matrix_grains();
-  const auto size = static_cast<std::ptrdiff_t>(grains.size());
-#pragma omp parallel for schedule(static) if (size > 256)
-  for (std::ptrdiff_t k = 0; k < size; ++k) {
-    const Index g = grains[static_cast<std::size_t>(k)];
-    const Block block = contacts.block(g);
-    BlockPower power(block);
-    for (int s = 0; s < 5; ++s) power.square();
-    ranges.low[g] = power.trace_ratio(block);
-    ranges.high[g] = power.trace_root() * (1 + 1e-10);
-  }
-}
-
-/// The greatest block_upper_bound() of all grains, and whose it is.
-SplittingBound block_maximum(const Sides& sides, const WeightedContacts& contacts, const BlockRanges& ranges) {
-  SplittingBound maximum;
-  std::vector<Index> grains;
-  const double least = ranges.low.empty() ? 0 : *std::max_element(ranges.low.begin(), ranges.low.end());
-  for (std::size_t g = 0; g < sides.size(); ++g)
-    if (!sides.of(g).empty() && ranges.high[g] >= least) grains.push_back(static_cast<Index>(g));
-  std::stable_sort(grains.begin(), grains.end(), [&](Index a, Index b) { return ranges.low[a] > ranges.low[b]; });
-  for (const Index g : grains) {
-    const std::size_t terms = sides.of(g).size();
-    if (ranges.high[g] < maximum.value) continue;
-    const Block block = contacts.block(g);
-    if (block_is_below(block, terms, maximum.value)) continue;
-    const double bound = block_upper_bound(block, terms);
-    if (bound > maximum.value) maximum.value = bound, maximum.grain = g;
-  }
-  return maximum;
-}
 
 /// Matrix sweeps at rising exponents, as long as they help; leaves the best weights met and their ranges.
 int sweep_matrices(const SplittingOptions& options, WeightedContacts& contacts, BlockRanges& ranges) {
@@ -57,7 +22,7 @@ int sweep_matrices(const SplittingOptions& options, WeightedContacts& contacts, 
     contacts.make_matrices(ranges.low, options.hot);
     for (int sweep = 0; sweep < options.matrix_sweeps; ++sweep) contacts.sweep(squarings);
     sweeps += options.matrix_sweeps;
-    matrix_ranges(contacts, ranges);
+    contacts.update(ranges);
     if (const double now = maximum(); now < least) least = now, best = contacts.weights(), best_ranges = ranges;
   }
   contacts.set_weights(std::move(best));
@@ -88,9 +53,9 @@ SplittingBound splitting_bound(const Sides& sides, const SplittingOptions& optio
     scalar_sweeps = scalars.sweeps;
   }
   WeightedContacts contacts(sides, std::move(start));
-  matrix_ranges(contacts, ranges);
+  contacts.update(ranges);
   if (options.matrix_sweeps > 0) matrix_sweeps = sweep_matrices(options, contacts, ranges);
-  SplittingBound bound = block_maximum(sides, contacts, ranges);
+  SplittingBound bound = contacts.bound(ranges);
   bound.scalar_sweeps = scalar_sweeps;
   bound.matrix_sweeps = matrix_sweeps;
   if (weights) *weights = contacts.weights();

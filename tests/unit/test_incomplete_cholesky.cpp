@@ -45,8 +45,9 @@ TEST(IncompleteCholesky, NeverCertifiesWhatIsBelowTheLargestEigenvalue) {
     for (const Index g : all_of(sides))
       if (ranges.high[g] >= sigma || random.uniform() < .3) patch.push_back(g);
     outside_fine += patch.size() < sides.size();
+    const WeightedContacts contacts(sides, {t, {}, {}});
     for (const double drop : {0., 1e-3, .1, 10.})
-      EXPECT_FALSE(factorise_below(sides, t, patch, sigma, drop).below) << seed << " drop " << drop;
+      EXPECT_FALSE(factorise_below(contacts, patch, sigma, drop).below) << seed << " drop " << drop;
   }
   EXPECT_GT(outside_fine, 300);  // else this has shown little
 }
@@ -56,7 +57,8 @@ TEST(IncompleteCholesky, WithoutDropsCertifiesAllThatIsAbove) {
     const auto network = test::random_network({.grains = 20}, seed);
     const Sides sides(network);
     const std::vector<double> t(network.springs.size(), 1.0);
-    const auto done = factorise_below(sides, t, all_of(sides), exact(network) * (1 + 1e-5), 0);
+    const auto done =
+        factorise_below(WeightedContacts(sides, {t, {}, {}}), all_of(sides), exact(network) * (1 + 1e-5), 0);
     EXPECT_TRUE(done.below) << seed;
     EXPECT_EQ(done.dropped, 0u);
   }
