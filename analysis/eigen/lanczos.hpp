@@ -2,9 +2,9 @@
 // Largest eigenvalue of a symmetric operator by plain Lanczos (Lanczos 1950; Paige 1971 on what round-off does to it).
 //
 // No basis is stored and nothing is reorthogonalised: lost orthogonality only repeats eigenvalues that have converged
-// and never moves the top Ritz value above λmax by more than round-off. A second pass of the same recurrence builds the
-// Ritz vector x, and value and residual are computed from x itself, so value ≤ λmax up to round-off whatever happened
-// before. Memory: five vectors.
+// and never moves the top Ritz value above λmax by more than round-off. The Ritz vector x is built from the basis, kept
+// in single precision where that is enough and memory allows, else by a second pass of the same recurrence; value and
+// residual are computed from x itself, so value ≤ λmax up to round-off whatever happened before.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -15,6 +15,7 @@
 
 #include "eigen/operator.hpp"
 #include "eigen/result.hpp"
+#include "eigen/single_basis.hpp"
 #include "eigen/tridiagonal.hpp"
 #include "eigen/vectors.hpp"
 
@@ -25,11 +26,14 @@ struct LanczosOptions {
   int min_steps = 60;       ///< before convergence is believed: a local mode may show late
   int max_steps = 1000;     ///< of one run; restarted from its Ritz vector at most max_restarts times
   int max_restarts = 3;
-  std::uint64_t seed = 1;           ///< of the random start vector
-  std::span<const double> start{};  ///< start vector instead, any length but zero; empty: random
+  std::uint64_t seed = 1;                          ///< of the random start vector
+  std::size_t basis_bytes = std::size_t{1} << 30;  ///< most memory for the basis
+  std::span<const double> start{};                 ///< start vector instead, any length but zero; empty: random
 };
 
 namespace detail {
+
+constexpr double least_single_tolerance = 1e-5;  // below it the rounding of a basis of floats shows in the residual
 
 /// The three-term recurrence β_{k+1} v_{k+1} = A v_k − α_k v_k − β_k v_{k−1}.
 template <LinearOperator A>
@@ -68,13 +72,15 @@ struct LanczosTop {
 };
 
 template <LinearOperator A>
-LanczosTop lanczos_pass(const A& a, const std::vector<double>& start, const LanczosOptions& options) {
+LanczosTop lanczos_pass(const A& a, const std::vector<double>& start, const LanczosOptions& options,
+                        SingleBasis& basis) {
   LanczosRecurrence<A> recurrence(a, start);
   std::vector<double> alpha, beta;
   LanczosTop top;
   const auto dimension = static_cast<int>(std::min<std::size_t>(a.rows(), std::numeric_limits<int>::max()));
   const int least = std::min(options.min_steps, dimension);
   for (int k = 1;; ++k) {
+    basis.push(recurrence.vector());
     recurrence.multiply();
     alpha.push_back(recurrence.alpha());
     const bool exhausted = recurrence.beta() <= 1e-14 * std::abs(*std::max_element(alpha.begin(), alpha.end()));
@@ -128,9 +134,17 @@ EigenResult lanczos_largest(const A& a, const LanczosOptions& options = {}) {
   if (start.empty()) start = random_unit_vector(a.rows(), options.seed);
   scale(start, 1 / norm(start));
   for (int run = 0; run <= options.max_restarts && !result.converged; ++run) {
-    const auto top = detail::lanczos_pass(a, start, options);
-    result.vector = detail::ritz_vector(a, start, top.pair.vector);
-    result.products += 2 * top.steps - 1;
+    const std::size_t room = options.tolerance < detail::least_single_tolerance ? 0 : options.basis_bytes;
+    detail::SingleBasis basis(room);
+    const auto top = detail::lanczos_pass(a, start, options, basis);
+    result.products += top.steps;
+    if (basis.complete()) {
+      result.vector = basis.combine(top.pair.vector);
+      scale(result.vector, 1 / norm(result.vector));
+    } else {
+      result.vector = detail::ritz_vector(a, start, top.pair.vector);
+      result.products += top.steps - 1;
+    }
     rayleigh_quotient(a, result);
     result.converged = result.residual <= options.tolerance * result.value || result.value == 0;
     start = result.vector;
