@@ -1,48 +1,88 @@
 #include "timestep/matrix_weights.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "timestep/block_power.hpp"
+#include "timestep/triangle.hpp"
 
 namespace eg {
 namespace {
 
-using Matrix3 = Eigen::Matrix3d;
-constexpr double widest_log = 7;
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr std::size_t lanes = Batch::lanes;
+constexpr double widest = 2000;  // largest entry of a T or T⁻¹ in use, about: beyond it a contact is one-sided anyway
 
-template <class Function>
-Matrix3 spectral(const Matrix3& matrix, Function function) {
-  const Eigen::SelfAdjointEigenSolver<Matrix3> solver(matrix);
-  return solver.eigenvectors() * solver.eigenvalues().unaryExpr(function).asDiagonal() *
-         solver.eigenvectors().transpose();
+std::size_t groups_of(std::size_t count) { return (count + lanes - 1) / lanes; }
+
+Eigen::Matrix3d full(const SymmetricSix& a) {
+  Eigen::Matrix3d m;
+  m << a[0], a[5], a[4], a[5], a[1], a[3], a[4], a[3], a[2];
+  return m;
 }
 
-/// k^½ = √kt 1 + (√kn − √kt) nnᵀ
-Matrix3 stiffness_root(const Spring& s) {
-  const Eigen::Vector3d n(s.n.x, s.n.y, s.n.z);
-  const double root = std::sqrt(s.tangential);
-  return root * Matrix3::Identity() + (std::sqrt(s.normal) - root) * n * n.transpose();
+/// Numbers gathered lane by lane.
+template <std::size_t size>
+struct Gathered {
+  alignas(64) double value[size][lanes];
+  EG_INLINE Batch operator[](std::size_t k) const { return load_lanes(value[k]); }
+};
+
+/// Springs of eight matrices; lanes left over repeat the last one.
+struct EightSprings {
+  Vec<Batch> n;
+  Batch root, excess;  ///< √kt and √kn − √kt: k^½ = √kt 1 + (√kn − √kt) nnᵀ
+  Batch normal, tangential, arm_i, arm_j;
+
+  EightSprings(const std::vector<Spring>& springs, const Index* which, std::size_t count) {
+    Gathered<7> g;
+    for (std::size_t l = 0; l < lanes; ++l) {
+      const Spring& s = springs[which[std::min(l, count - 1)]];
+      const double values[] = {s.n.x, s.n.y, s.n.z, s.normal, s.tangential, s.arm_i, s.arm_j};
+      for (std::size_t k = 0; k < 7; ++k) g.value[k][l] = values[k];
+    }
+    n = {g[0], g[1], g[2]};
+    normal = g[3], tangential = g[4], arm_i = g[5], arm_j = g[6];
+    root = sqrt(tangential);
+    excess = sqrt(normal) - root;
+  }
+  EG_INLINE Symmetric3 stiffness() const {
+    const Batch e = normal - tangential;
+    return Symmetric3{e * n.x * n.x, e * n.y * n.y, e * n.z * n.z, e * n.y * n.z, e * n.x * n.z, e * n.x * n.y}
+        .plus_identity(tangential);
+  }
+};
+
+/// D P D with B = [sign 1, a n×] on both sides: B D P D Bᵀ (3×3) for eight grains, d and e the scales of u and θ.
+EG_INLINE Symmetric3 seen_from_contact(const Gathered<21>& p, const Vec<Batch>& n, Batch sign_d, Batch a_e) {
+  const auto at = [&](std::size_t r, std::size_t c) { return p[Triangle::at(r, c)]; };
+  const Symmetric3 uu{at(0, 0), at(1, 1), at(2, 2), at(2, 1), at(2, 0), at(1, 0)};
+  // Rows of P_uθ Nᵀ and of P_θθ Nᵀ: Nᵀ on the right of a row w gives n × w.
+  const auto row = [&](std::size_t r) { return cross(n, Vec<Batch>{at(r, 3), at(r, 4), at(r, 5)}); };
+  const Vec<Batch> x = row(0), y = row(1), z = row(2), tx = row(3), ty = row(4), tz = row(5);
+  const Vec<Batch> cx = cross(n, Vec<Batch>{tx.x, ty.x, tz.x}), cy = cross(n, Vec<Batch>{tx.y, ty.y, tz.y}),
+                   cz = cross(n, Vec<Batch>{tx.z, ty.z, tz.z});
+  const Batch two(2.0), mixed = sign_d * a_e;
+  const Symmetric3 ut{two * x.x, two * y.y, two * z.z, y.z + z.y, x.z + z.x, x.y + y.x};
+  const Symmetric3 tt{cx.x, cy.y, cz.z, cz.y, cz.x, cy.x};
+  return uu * (sign_d * sign_d) + ut * mixed + tt * (a_e * a_e);
 }
 
-/// ln of (A⁻¹ # B) = L^−ᵀ (LᵀBL)^½ L⁻¹, A = LLᵀ.
-Matrix3 log_geometric_mean(const Matrix3& a, const Matrix3& b) {
-  const Eigen::LLT<Matrix3> cholesky(a);
-  const Matrix3 l = cholesky.matrixL();
-  const Matrix3 root = spectral(l.transpose() * b * l, [](double x) { return std::sqrt(std::max(x, 0.0)); });
-  Matrix3 mean = l.transpose().triangularView<Eigen::Upper>().solve(root);
-  mean = l.transpose().triangularView<Eigen::Upper>().solve(mean.transpose()).eval();
-  return spectral(0.5 * (mean + mean.transpose()), [](double x) { return std::log(std::max(x, 1e-300)); });
+/// A matrix near singular carries no wish about the weak directions: they are held at a thousandth of its trace.
+EG_INLINE Symmetric3 regular(const Symmetric3& a, Batch trace) {
+  return (a * (Batch(1.0) / trace)).plus_identity(Batch(1e-3));
 }
 
-/// A matrix near singular carries no wish about the weak directions: they are held at a millionth of its trace.
-Matrix3 regular(Matrix3 a, double trace) {
-  a /= trace;
-  return a + 1e-6 * Matrix3::Identity();
+/// T moved towards the T* that A and B wish for, on the line between arithmetic and harmonic means.
+EG_INLINE Symmetric3 moved(const Symmetric3& t, const Symmetric3& a, const Symmetric3& b, double step) {
+  const Batch trace_a = a.trace(), trace_b = b.trace(), rest(1 - step), share(step);
+  const Symmetric3 wish =
+      geometric_mean(inverse(regular(a, trace_a)), regular(b, trace_b), 4) * sqrt(trace_b / trace_a);
+  const Symmetric3 high = t * rest + wish * share;
+  const Symmetric3 low = inverse(inverse(t) * rest + inverse(wish) * share);
+  return geometric_mean(high, low, 1);
 }
 
 }  // namespace
@@ -53,40 +93,88 @@ WeightedContacts::WeightedContacts(const Sides& sides, SplittingWeights weights)
 
 void WeightedContacts::set_weights(SplittingWeights weights) {
   weights_ = std::move(weights);
-  matrix_of_.assign(sides_.network().springs.size(), no_index);
-  pairs_.resize(weights_.matrix_spring.size());
-  for (std::size_t m = 0; m < pairs_.size(); ++m) {
-    matrix_of_[weights_.matrix_spring[m]] = static_cast<Index>(m);
-    refresh(m);
-  }
   grains_.clear();
-  for (const Index c : weights_.matrix_spring)
-    for (const Index g : {sides_.network().springs[c].i, sides_.network().springs[c].j})
-      if (g != no_index) grains_.push_back(g);
+  matrix_of_.clear(), place_.clear(), pairs_.clear();
+  if (weights_.matrix_spring.empty()) return;
+  const auto& springs = sides_.network().springs;
+  matrix_of_.assign(springs.size(), no_index);
+  place_.assign(sides_.size(), no_index);
+  for (std::size_t m = 0; m < weights_.matrix_spring.size(); ++m) {
+    const Index c = weights_.matrix_spring[m];
+    matrix_of_[c] = static_cast<Index>(m);
+    for (const Index g : {springs[c].i, springs[c].j})
+      if (std::exchange(place_[g], 0) == no_index) grains_.push_back(g);
+  }
   std::sort(grains_.begin(), grains_.end());
-  grains_.erase(std::unique(grains_.begin(), grains_.end()), grains_.end());
+  for (std::size_t k = 0; k < grains_.size(); ++k) place_[grains_[k]] = static_cast<Index>(k);
+  pairs_.resize(weights_.matrix_spring.size());
+  refresh();
 }
 
-Matrix3 WeightedContacts::weighted_stiffness(const Side& side) const {
-  const Matrix3 k = contact_stiffness(sides_.network().springs[side.spring]);
+Eigen::Matrix3d WeightedContacts::weighted_stiffness(const Side& side) const {
+  const Eigen::Matrix3d k = contact_stiffness(sides_.network().springs[side.spring]);
   if (side.role == Side::Role::alone) return k;
   const bool first = side.role == Side::Role::first;
-  if (const Index m = matrix_of_[side.spring]; m != no_index) return first ? pairs_[m].first : pairs_[m].second;
+  if (!matrix_of_.empty() && matrix_of_[side.spring] != no_index) {
+    const Pair& pair = pairs_[matrix_of_[side.spring]];
+    return full(first ? pair.first : pair.second);
+  }
   const double t = weights_.scalar[side.spring];
   return (1 + (first ? t : 1 / t)) * k;
 }
 
-void WeightedContacts::refresh(std::size_t matrix) {
-  const Eigen::SelfAdjointEigenSolver<Matrix3> solver(weights_.log_matrix[matrix]);
-  const Eigen::Vector3d log_t = solver.eigenvalues();
-  const Matrix3& v = solver.eigenvectors();
-  // The proof needs [T −1; −1 T⁻¹] ≥ 0 of the numbers as rounded: both are inflated by their condition times a few ε.
-  const double inflate = 1 + 64 * std::numeric_limits<double>::epsilon() * std::exp(log_t(2) - log_t(0));
-  const Matrix3 t = inflate * (v * log_t.array().exp().matrix().asDiagonal() * v.transpose());
-  const Matrix3 inverse = inflate * (v * (-log_t.array()).exp().matrix().asDiagonal() * v.transpose());
-  const Spring& spring = sides_.network().springs[weights_.matrix_spring[matrix]];
-  const Matrix3 root = stiffness_root(spring), k = contact_stiffness(spring);
-  pairs_[matrix] = {k + root * t * root, k + root * inverse * root};
+/// Takes over T for the matrices from `first` on, with the pairs that follow from it, where `fit` says so.
+void WeightedContacts::store(std::size_t first, std::size_t count, const Symmetric3& t, const Symmetric3& inverse,
+                             Mask fit) {
+  const EightSprings springs(sides_.network().springs, &weights_.matrix_spring[first], count);
+  // The proof needs [T −1; −1 R] ≥ 0 of the numbers as rounded. With κ = ‖T‖‖R‖ and E = T R − 1, R (1 + 2√κ‖E‖) ≥ T⁻¹;
+  // what follows has errors of some ε relative to norms, so some εκ relative to the matrices themselves.
+  const Batch size_t_ = t.frobenius(), size_r = inverse.frobenius(), condition = size_t_ * size_r;
+  const Batch error = distance_from_inverse(t, inverse) + Batch(64 * epsilon) * condition;
+  const Symmetric3 r = inverse * (Batch(1.0) + Batch(2.0) * sqrt(condition) * error);
+  const Batch stiffest = max(springs.normal, springs.tangential) * Batch(64 * epsilon);
+  const Symmetric3 k = springs.stiffness();
+  const auto side = [&](const Symmetric3& weight, Batch size) {
+    return (k + sandwich(weight, springs.root, springs.excess, springs.n)).plus_identity(stiffest * size);
+  };
+  const Symmetric3 one = side(t, size_t_), two = side(r, size_r);
+  const auto number = [](const Symmetric3& a, std::size_t l) {
+    return SymmetricSix{a.xx[l], a.yy[l], a.zz[l], a.yz[l], a.xz[l], a.xy[l]};
+  };
+  for (std::size_t l = 0; l < count; ++l)
+    if (lane(fit, l)) {
+      weights_.matrix[first + l] = number(t, l);
+      pairs_[first + l] = {number(one, l), number(two, l)};
+    }
+}
+
+namespace {
+
+Symmetric3 load_matrices(const std::vector<SymmetricSix>& matrix, std::size_t first, std::size_t count) {
+  Gathered<6> g;
+  for (std::size_t l = 0; l < lanes; ++l)
+    for (std::size_t k = 0; k < 6; ++k) g.value[k][l] = matrix[first + std::min(l, count - 1)][k];
+  return {g[0], g[1], g[2], g[3], g[4], g[5]};
+}
+
+/// Whether T is one to work with: false for what is not a number too.
+Mask is_fit(const Symmetric3& t, const Symmetric3& inverse) {
+  return (t.frobenius() < Batch(widest)) & (inverse.frobenius() < Batch(widest)) & (t.trace() > Batch(0.0)) &
+         (inverse.trace() > Batch(0.0)) & (distance_from_inverse(t, inverse) < Batch(1e-8));
+}
+
+}  // namespace
+
+/// Pairs anew from all matrices; T = 1 takes the place of one that is not fit.
+void WeightedContacts::refresh() {
+  for (std::size_t m = 0; m < pairs_.size(); m += lanes) {
+    const std::size_t count = std::min(lanes, pairs_.size() - m);
+    const Symmetric3 t = load_matrices(weights_.matrix, m, count), back = inverse(t);
+    const Symmetric3 one{Batch(1.0), Batch(1.0), Batch(1.0), Batch(0.0), Batch(0.0), Batch(0.0)};
+    const Mask fit = is_fit(t, back);
+    store(m, count, one, one, !fit);
+    store(m, count, t, back, fit);
+  }
 }
 
 void WeightedContacts::make_matrices(const std::vector<double>& lambda, double hot) {
@@ -94,51 +182,113 @@ void WeightedContacts::make_matrices(const std::vector<double>& lambda, double h
   SplittingWeights next{weights_.scalar, {}, {}};
   const auto& springs = sides_.network().springs;
   for (std::size_t c = 0; c < springs.size(); ++c) {
-    const Index m = matrix_of_[c];
+    const Index m = matrix_of_.empty() ? no_index : matrix_of_[c];
     if (m == no_index && !(sides_.is_split(c) && std::max(lambda[springs[c].i], lambda[springs[c].j]) >= threshold))
       continue;
+    const double t = std::clamp(weights_.scalar[c], 2 / widest, widest / 2);
     next.matrix_spring.push_back(static_cast<Index>(c));
-    next.log_matrix.push_back(m != no_index ? weights_.log_matrix[m]
-                                            : Matrix3(std::log(weights_.scalar[c]) * Matrix3::Identity()));
+    next.matrix.push_back(m != no_index ? weights_.matrix[m] : SymmetricSix{t, t, t, 0, 0, 0});
   }
   set_weights(std::move(next));
 }
 
-void WeightedContacts::sweep(int squarings) {
+/// S_i / scale.
+WeightedContacts::Lower WeightedContacts::lower_triangle(Index grain, double scale) const {
+  double uu[6] = {}, ut[3][3] = {}, tt[6] = {};
   const auto& springs = sides_.network().springs;
-  std::vector<BlockPower> power(grains_.size(), BlockPower(Block::Zero()));
-  const auto size = static_cast<std::ptrdiff_t>(grains_.size());
-#pragma omp parallel for schedule(static) if (size > 256)
-  for (std::ptrdiff_t k = 0; k < size; ++k) {
-    BlockPower p(block(grains_[static_cast<std::size_t>(k)]));
-    for (int s = 0; s < squarings; ++s) p.square();
-    power[static_cast<std::size_t>(k)] = p;
+  for (const Side& side : sides_.of(grain)) {
+    const Spring& s = springs[side.spring];
+    SymmetricSix w;
+    if (const Index m = matrix_of_[side.spring]; m != no_index) {
+      w = side.role == Side::Role::first ? pairs_[m].first : pairs_[m].second;
+    } else {
+      const double t = weights_.scalar[side.spring];
+      const double f = side.role == Side::Role::alone ? 1 : 1 + (side.role == Side::Role::first ? t : 1 / t);
+      const double kt = f * s.tangential, e = f * s.normal - kt;
+      w = {e * s.n.x * s.n.x + kt, e * s.n.y * s.n.y + kt, e * s.n.z * s.n.z + kt,
+           e * s.n.y * s.n.z,      e * s.n.x * s.n.z,      e * s.n.x * s.n.y};
+    }
+    const auto [sign, arm] = Sides::lever_of(s, side);
+    const Vec3 n = arm * s.n;
+    const Vec3 z[3] = {cross({w[0], w[5], w[4]}, n), cross({w[5], w[1], w[3]}, n), cross({w[4], w[3], w[2]}, n)};
+    for (int k = 0; k < 6; ++k) uu[k] += std::abs(sign) * w[static_cast<std::size_t>(k)];
+    for (int r = 0; r < 3; ++r) ut[r][0] += sign * z[r].x, ut[r][1] += sign * z[r].y, ut[r][2] += sign * z[r].z;
+    const Vec3 x = cross({z[0].x, z[1].x, z[2].x}, n), y = cross({z[0].y, z[1].y, z[2].y}, n),
+               last = cross({z[0].z, z[1].z, z[2].z}, n);
+    tt[0] += x.x, tt[1] += y.y, tt[2] += last.z, tt[3] += last.y, tt[4] += last.x, tt[5] += y.x;
   }
-  const auto power_of = [&](Index grain) -> const BlockPower& {
-    return power[static_cast<std::size_t>(std::lower_bound(grains_.begin(), grains_.end(), grain) - grains_.begin())];
-  };
+  static constexpr int place[3][3] = {{0, 5, 4}, {5, 1, 3}, {4, 3, 2}};
+  const auto d = sides_.scale(grain);
+  Lower lower{};
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c <= r; ++c) {
+      lower[Triangle::at(r, c)] = d(r) * d(c) * uu[place[r][c]] / scale;
+      lower[Triangle::at(3 + r, 3 + c)] = d(3 + r) * d(3 + c) * tt[place[r][c]] / scale;
+    }
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) lower[Triangle::at(3 + c, r)] = d(r) * d(3 + c) * ut[r][c] / scale;
+  return lower;
+}
 
+/// (S_i / s)^(2^squarings) of all grains with matrices, s near their largest eigenvalue: cold ones may underflow to 0.
+std::vector<WeightedContacts::Lower> WeightedContacts::powers(int squarings) const {
+  std::vector<Lower> rows(grains_.size());
+  double scale = 0;
+  const auto size = static_cast<std::ptrdiff_t>(rows.size());
+#pragma omp parallel for schedule(static) reduction(max : scale) if (size > 2048)
+  for (std::ptrdiff_t k = 0; k < size; ++k) {
+    Lower& row = rows[static_cast<std::size_t>(k)];
+    row = lower_triangle(grains_[static_cast<std::size_t>(k)], 1);
+    double squares = 0;
+    for (std::size_t r = 0; r < 6; ++r)
+      for (std::size_t c = 0; c < 6; ++c) squares += row[Triangle::at(r, c)] * row[Triangle::at(r, c)];
+    scale = std::max(scale, squares);
+  }
+  scale = 0.8 * std::sqrt(scale);  // Frobenius: λmax is some tenths below
+  const auto groups = static_cast<std::ptrdiff_t>(groups_of(rows.size()));
+#pragma omp parallel for schedule(static) if (groups > 256)
+  for (std::ptrdiff_t group = 0; group < groups; ++group) {
+    const std::size_t first = lanes * static_cast<std::size_t>(group), count = std::min(lanes, rows.size() - first);
+    Gathered<21> g;
+    for (std::size_t l = 0; l < lanes; ++l)
+      for (std::size_t k = 0; k < 21; ++k) g.value[k][l] = rows[first + std::min(l, count - 1)][k] / scale;
+    Triangle power;
+    for (std::size_t k = 0; k < 21; ++k) power.a[k] = g[k];
+    for (int s = 0; s < squarings; ++s) power = square(power);
+    for (std::size_t k = 0; k < 21; ++k) store_lanes(g.value[k], power.a[k]);
+    for (std::size_t l = 0; l < count; ++l)
+      for (std::size_t k = 0; k < 21; ++k) rows[first + l][k] = g.value[k][l];
+  }
+  return rows;
+}
+
+void WeightedContacts::sweep(int squarings) {
+  const std::vector<Lower> power = powers(squarings);
   const double step = std::min(0.3, 2 / (std::exp2(squarings) + 1));
-  const auto count = static_cast<std::ptrdiff_t>(pairs_.size());
-#pragma omp parallel for schedule(static) if (count > 256)
-  for (std::ptrdiff_t k = 0; k < count; ++k) {
-    const auto m = static_cast<std::size_t>(k);
-    const Index c = weights_.matrix_spring[m];
-    const Spring& spring = springs[c];
-    const Matrix3 root = stiffness_root(spring);
-    const BlockPower &pi = power_of(spring.i), &pj = power_of(spring.j);
-    const Eigen::Matrix<double, 3, 6> ai =
-        root * sides_.scaled_matrix(spring.i, {c, Side::Role::first, ContactSide::first, false});
-    const Eigen::Matrix<double, 3, 6> aj =
-        root * sides_.scaled_matrix(spring.j, {c, Side::Role::second, ContactSide::second, false});
-    const Matrix3 a = ai * pi.matrix * ai.transpose(), b = aj * pj.matrix * aj.transpose();
-    const double trace_a = a.trace(), trace_b = b.trace();
-    if (!(trace_a > 0 && trace_b > 0)) continue;
-    Matrix3 wish = log_geometric_mean(regular(a, trace_a), regular(b, trace_b));
-    wish += 0.5 * (pj.log_scale + std::log(trace_b) - pi.log_scale - std::log(trace_a)) * Matrix3::Identity();
-    const Matrix3 moved = weights_.log_matrix[m] + step * (wish - weights_.log_matrix[m]);
-    weights_.log_matrix[m] = spectral(moved, [](double x) { return std::clamp(x, -widest_log, widest_log); });
-    refresh(m);
+  const auto& network = sides_.network();
+  const auto groups = static_cast<std::ptrdiff_t>(groups_of(pairs_.size()));
+#pragma omp parallel for schedule(static) if (groups > 256)
+  for (std::ptrdiff_t group = 0; group < groups; ++group) {
+    const std::size_t first = lanes * static_cast<std::size_t>(group), count = std::min(lanes, pairs_.size() - first);
+    const Index* which = &weights_.matrix_spring[first];
+    const EightSprings springs(network.springs, which, count);
+    const auto wish = [&](auto end, Batch arm, double sign) {
+      Gathered<21> p;
+      Gathered<2> scale;
+      for (std::size_t l = 0; l < lanes; ++l) {
+        const Index grain = network.springs[which[std::min(l, count - 1)]].*end;
+        const Lower& row = power[place_[grain]];
+        for (std::size_t k = 0; k < 21; ++k) p.value[k][l] = row[k];
+        scale.value[0][l] = sign * std::sqrt(network.inverse_mass[grain]);
+        scale.value[1][l] = network.rotation ? std::sqrt(network.inverse_inertia[grain]) : 0;
+      }
+      return sandwich(seen_from_contact(p, springs.n, scale[0], arm * scale[1]), springs.root, springs.excess,
+                      springs.n);
+    };
+    const Symmetric3 a = wish(&Spring::i, springs.arm_i, -1), b = wish(&Spring::j, springs.arm_j, 1);
+    const Symmetric3 t = moved(load_matrices(weights_.matrix, first, count), a, b, step);
+    const Symmetric3 back = inverse(t);
+    store(first, count, t, back, is_fit(t, back));
   }
 }
 

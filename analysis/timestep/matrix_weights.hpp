@@ -1,10 +1,12 @@
 #pragma once
 // The weights of contact splitting, and the sweeps that improve 3×3 ones.
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "timestep/block_ranges.hpp"
 #include "timestep/splitting.hpp"
+#include "timestep/symmetric3.hpp"
 
 namespace eg {
 
@@ -40,21 +42,26 @@ class WeightedContacts {
   SplittingBound bound(const BlockRanges& ranges) const;
 
   /// One step of all matrices towards the minimum of Σ tr S_i^(q+1), q = 2^squarings. Stationarity is T A T = B with
-  /// A = A_i S_i^q A_iᵀ and B = A_j S_j^q A_jᵀ, so T* = A⁻¹ # B, the geometric mean (Bhatia 2007); ln T moves a
-  /// step min(0.3, 2/(q+1)) towards ln T*, because all neighbours move at once.
+  /// A = A_i S_i^q A_iᵀ and B = A_j S_j^q A_jᵀ, so T* = A⁻¹ # B, the geometric mean (Bhatia 2007); T moves a step
+  /// min(0.3, 2/(q+1)) towards T*, because all neighbours move at once. Eight contacts at a time, the same for any
+  /// number of threads.
   void sweep(int squarings);
 
  private:
   struct Pair {
-    Eigen::Matrix3d first, second;  ///< k^½ W k^½ with W = 1 + T and 1 + T⁻¹
+    SymmetricSix first, second;  ///< k^½ W k^½ with W = 1 + T and 1 + T⁻¹
   };
-  void refresh(std::size_t matrix);
+  void refresh();
+  void store(std::size_t first, std::size_t count, const Symmetric3& t, const Symmetric3& inverse, Mask fit);
+  using Lower = std::array<double, 21>;  ///< rows of the lower triangle of a block
+  Lower lower_triangle(Index grain, double scale) const;
+  std::vector<Lower> powers(int squarings) const;
 
   const Sides& sides_;
   SplittingWeights weights_;
   std::vector<Index> matrix_of_;  ///< a spring: its place in the matrices, or no_index
   std::vector<Pair> pairs_;
-  std::vector<Index> grains_;
+  std::vector<Index> grains_, place_;  ///< grains of contacts with matrices; a grain's place among them
 };
 
 }  // namespace eg

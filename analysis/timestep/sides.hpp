@@ -40,6 +40,14 @@ class Sides {
   /// Whether a contact joins two different grains that can move.
   bool is_split(std::size_t spring) const { return split_[spring] != 0; }
 
+  struct Lever {
+    double sign, arm;  ///< B = [sign 1, arm n×]
+  };
+  static Lever lever_of(const Spring& s, const Side& side) {
+    if (side.own_image) return {0, s.arm_i + s.arm_j};
+    return side.matrix == ContactSide::first ? Lever{-1, s.arm_i} : Lever{1, s.arm_j};
+  }
+
   /// M^−½ of a grain; 0 for what is not a degree of freedom.
   Eigen::Matrix<double, 6, 1> scale(std::size_t grain) const;
 
@@ -68,13 +76,6 @@ class Sides {
   }
 
  private:
-  struct Lever {
-    double sign, arm;  ///< B = [sign 1, arm n×]
-  };
-  static Lever lever_of(const Spring& s, const Side& side) {
-    if (side.own_image) return {0, s.arm_i + s.arm_j};
-    return side.matrix == ContactSide::first ? Lever{-1, s.arm_i} : Lever{1, s.arm_j};
-  }
   const Network& network_;
   Eigen::Matrix<double, 6, 1> active_;  ///< 1 for degrees of freedom of this dimension, 0 for the rest
   std::vector<std::uint32_t> begin_;

@@ -6,19 +6,22 @@
 // (+1 for the first grain of a contact, −1 for the second; weight 1 towards a wall or a fixed grain). Every T is a
 // proof; good ones come from sweeps over scalars t and then, where the maximum is decided, over 3×3 matrices. The last
 // step evaluates all S_i anew with a margin for round-off, so what the sweeps did does not matter to the proof.
-#include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "timestep/sides.hpp"
 
 namespace eg {
 
+/// A symmetric 3×3 matrix: xx yy zz yz xz xy.
+using SymmetricSix = std::array<double, 6>;
+
 /// The choice of T, one a contact. May be kept and passed on to the next evaluation of a network with the same springs
 /// in the same order (a warm start); one of another size is dropped.
 struct SplittingWeights {
-  std::vector<double> scalar;               ///< t, a spring
-  std::vector<Index> matrix_spring;         ///< springs with a matrix T instead, ascending
-  std::vector<Eigen::Matrix3d> log_matrix;  ///< ln T of those, symmetric
+  std::vector<double> scalar;        ///< t, a spring
+  std::vector<Index> matrix_spring;  ///< springs with a matrix T instead, ascending
+  std::vector<SymmetricSix> matrix;  ///< T of those, positive definite
 };
 
 struct SplittingOptions {
