@@ -75,14 +75,33 @@ EG_INLINE Symmetric3 regular(const Symmetric3& a, Batch trace) {
   return (a * (Batch(1.0) / trace)).plus_identity(Batch(1e-3));
 }
 
-/// T moved towards the T* that A and B wish for, on the line between arithmetic and harmonic means.
-EG_INLINE Symmetric3 moved(const Symmetric3& t, const Symmetric3& a, const Symmetric3& b, double step) {
-  const Batch trace_a = a.trace(), trace_b = b.trace(), rest(1 - step), share(step);
-  const Symmetric3 wish =
-      geometric_mean(inverse(regular(a, trace_a)), regular(b, trace_b), 4) * sqrt(trace_b / trace_a);
-  const Symmetric3 high = t * rest + wish * share;
-  const Symmetric3 low = inverse(inverse(t) * rest + inverse(wish) * share);
-  return geometric_mean(high, low, 1);
+Batch exp_lanes(Batch x) {
+  for (std::size_t l = 0; l < lanes; ++l) x.v[l] = std::exp(x.v[l]);
+  return x;
+}
+Batch log_lanes(Batch x) {
+  for (std::size_t l = 0; l < lanes; ++l) x.v[l] = std::log(x.v[l]);
+  return x;
+}
+
+/// T moved a share `step` of the way to the T* that A and B wish for, ln A and ln B larger by log_a and log_b than the
+/// matrices given: its size on a logarithmic scale, its shape along the geodesic, which is halved twice and then so
+/// short that arithmetic and harmonic means will do.
+EG_INLINE Symmetric3 moved(const Symmetric3& t, const Symmetric3& a, const Symmetric3& b, Batch log_a, Batch log_b,
+                           double step) {
+  const Batch trace_a = a.trace(), trace_b = b.trace(), trace_t = t.trace(), one(1.0);
+  Symmetric3 shape = geometric_mean(inverse(regular(a, trace_a)), regular(b, trace_b), 5);
+  const Batch trace = shape.trace();
+  shape = shape * (trace_t / trace);
+  shape = geometric_mean(t, shape, 3);
+  shape = geometric_mean(t, shape, 2);
+  const Batch share(4 * step), rest(1 - 4 * step);
+  const Symmetric3 high = t * rest + shape * share;
+  const Symmetric3 low = inverse(inverse(t) * rest + inverse(shape) * share);
+  const Symmetric3 turned = geometric_mean(high, low, 1);
+  const Batch wish = Batch(0.5) * (log_b - log_a + log_lanes(trace_b / trace_a)) + log_lanes(trace / trace_t);
+  const Batch far = exp_lanes(max(Batch(-2.0), min(Batch(2.0), Batch(step) * wish)));
+  return turned * (far * trace_t / turned.trace());
 }
 
 }  // namespace
@@ -192,8 +211,8 @@ void WeightedContacts::make_matrices(const std::vector<double>& lambda, double h
   set_weights(std::move(next));
 }
 
-/// S_i / scale.
-WeightedContacts::Lower WeightedContacts::lower_triangle(Index grain, double scale) const {
+/// S_i.
+WeightedContacts::Lower WeightedContacts::lower_triangle(Index grain) const {
   double uu[6] = {}, ut[3][3] = {}, tt[6] = {};
   const auto& springs = sides_.network().springs;
   for (const Side& side : sides_.of(grain)) {
@@ -222,49 +241,45 @@ WeightedContacts::Lower WeightedContacts::lower_triangle(Index grain, double sca
   Lower lower{};
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c <= r; ++c) {
-      lower[Triangle::at(r, c)] = d(r) * d(c) * uu[place[r][c]] / scale;
-      lower[Triangle::at(3 + r, 3 + c)] = d(3 + r) * d(3 + c) * tt[place[r][c]] / scale;
+      lower[Triangle::at(r, c)] = d(r) * d(c) * uu[place[r][c]];
+      lower[Triangle::at(3 + r, 3 + c)] = d(3 + r) * d(3 + c) * tt[place[r][c]];
     }
   for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) lower[Triangle::at(3 + c, r)] = d(r) * d(3 + c) * ut[r][c] / scale;
+    for (int c = 0; c < 3; ++c) lower[Triangle::at(3 + c, r)] = d(r) * d(3 + c) * ut[r][c];
   return lower;
 }
 
-/// (S_i / s)^(2^squarings) of all grains with matrices, s near their largest eigenvalue: cold ones may underflow to 0.
-std::vector<WeightedContacts::Lower> WeightedContacts::powers(int squarings) const {
-  std::vector<Lower> rows(grains_.size());
-  double scale = 0;
-  const auto size = static_cast<std::ptrdiff_t>(rows.size());
-#pragma omp parallel for schedule(static) reduction(max : scale) if (size > 2048)
-  for (std::ptrdiff_t k = 0; k < size; ++k) {
-    Lower& row = rows[static_cast<std::size_t>(k)];
-    row = lower_triangle(grains_[static_cast<std::size_t>(k)], 1);
-    double squares = 0;
-    for (std::size_t r = 0; r < 6; ++r)
-      for (std::size_t c = 0; c < 6; ++c) squares += row[Triangle::at(r, c)] * row[Triangle::at(r, c)];
-    scale = std::max(scale, squares);
-  }
-  scale = 0.8 * std::sqrt(scale);  // Frobenius: λmax is some tenths below
+/// S_i^(2^squarings) of all grains with matrices.
+std::vector<WeightedContacts::Power> WeightedContacts::powers(int squarings) const {
+  std::vector<Power> rows(grains_.size());
   const auto groups = static_cast<std::ptrdiff_t>(groups_of(rows.size()));
 #pragma omp parallel for schedule(static) if (groups > 256)
   for (std::ptrdiff_t group = 0; group < groups; ++group) {
     const std::size_t first = lanes * static_cast<std::size_t>(group), count = std::min(lanes, rows.size() - first);
     Gathered<21> g;
-    for (std::size_t l = 0; l < lanes; ++l)
-      for (std::size_t k = 0; k < 21; ++k) g.value[k][l] = rows[first + std::min(l, count - 1)][k] / scale;
+    for (std::size_t l = 0; l < lanes; ++l) {
+      const Lower row = lower_triangle(grains_[first + std::min(l, count - 1)]);
+      for (std::size_t k = 0; k < 21; ++k) g.value[k][l] = row[k];
+    }
     Triangle power;
     for (std::size_t k = 0; k < 21; ++k) power.a[k] = g[k];
-    for (int s = 0; s < squarings; ++s) power = square(power);
+    Batch log_scale = log_lanes(normalise(power));
+    for (int s = 0; s < squarings; ++s) {
+      power = square(power);
+      log_scale = log_scale + log_scale + log_lanes(normalise(power));
+    }
     for (std::size_t k = 0; k < 21; ++k) store_lanes(g.value[k], power.a[k]);
-    for (std::size_t l = 0; l < count; ++l)
-      for (std::size_t k = 0; k < 21; ++k) rows[first + l][k] = g.value[k][l];
+    for (std::size_t l = 0; l < count; ++l) {
+      for (std::size_t k = 0; k < 21; ++k) rows[first + l].lower[k] = g.value[k][l];
+      rows[first + l].log_scale = log_scale[l];
+    }
   }
   return rows;
 }
 
 void WeightedContacts::sweep(int squarings) {
-  const std::vector<Lower> power = powers(squarings);
-  const double step = std::min(0.3, 2 / (std::exp2(squarings) + 1));
+  const std::vector<Power> power = powers(squarings);
+  const double step = std::min(0.25, 2 / (std::exp2(squarings) + 1));
   const auto& network = sides_.network();
   const auto groups = static_cast<std::ptrdiff_t>(groups_of(pairs_.size()));
 #pragma omp parallel for schedule(static) if (groups > 256)
@@ -272,21 +287,24 @@ void WeightedContacts::sweep(int squarings) {
     const std::size_t first = lanes * static_cast<std::size_t>(group), count = std::min(lanes, pairs_.size() - first);
     const Index* which = &weights_.matrix_spring[first];
     const EightSprings springs(network.springs, which, count);
-    const auto wish = [&](auto end, Batch arm, double sign) {
+    const auto wish = [&](auto end, Batch arm, double sign, Batch& log_scale) {
       Gathered<21> p;
-      Gathered<2> scale;
+      Gathered<3> scale;
       for (std::size_t l = 0; l < lanes; ++l) {
         const Index grain = network.springs[which[std::min(l, count - 1)]].*end;
-        const Lower& row = power[place_[grain]];
-        for (std::size_t k = 0; k < 21; ++k) p.value[k][l] = row[k];
+        const Power& row = power[place_[grain]];
+        for (std::size_t k = 0; k < 21; ++k) p.value[k][l] = row.lower[k];
+        scale.value[2][l] = row.log_scale;
         scale.value[0][l] = sign * std::sqrt(network.inverse_mass[grain]);
         scale.value[1][l] = network.rotation ? std::sqrt(network.inverse_inertia[grain]) : 0;
       }
+      log_scale = scale[2];
       return sandwich(seen_from_contact(p, springs.n, scale[0], arm * scale[1]), springs.root, springs.excess,
                       springs.n);
     };
-    const Symmetric3 a = wish(&Spring::i, springs.arm_i, -1), b = wish(&Spring::j, springs.arm_j, 1);
-    const Symmetric3 t = moved(load_matrices(weights_.matrix, first, count), a, b, step);
+    Batch log_a, log_b;
+    const Symmetric3 a = wish(&Spring::i, springs.arm_i, -1, log_a), b = wish(&Spring::j, springs.arm_j, 1, log_b);
+    const Symmetric3 t = moved(load_matrices(weights_.matrix, first, count), a, b, log_a, log_b, step);
     const Symmetric3 back = inverse(t);
     store(first, count, t, back, is_fit(t, back));
   }

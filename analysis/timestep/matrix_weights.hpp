@@ -43,7 +43,7 @@ class WeightedContacts {
 
   /// One step of all matrices towards the minimum of Σ tr S_i^(q+1), q = 2^squarings. Stationarity is T A T = B with
   /// A = A_i S_i^q A_iᵀ and B = A_j S_j^q A_jᵀ, so T* = A⁻¹ # B, the geometric mean (Bhatia 2007); T moves a step
-  /// min(0.3, 2/(q+1)) towards T*, because all neighbours move at once. Eight contacts at a time, the same for any
+  /// min(0.25, 2/(q+1)) towards T*, because all neighbours move at once. Eight contacts at a time, the same for any
   /// number of threads.
   void sweep(int squarings);
 
@@ -54,8 +54,12 @@ class WeightedContacts {
   void refresh();
   void store(std::size_t first, std::size_t count, const Symmetric3& t, const Symmetric3& inverse, Mask fit);
   using Lower = std::array<double, 21>;  ///< rows of the lower triangle of a block
-  Lower lower_triangle(Index grain, double scale) const;
-  std::vector<Lower> powers(int squarings) const;
+  struct Power {
+    Lower lower;       ///< trace 1
+    double log_scale;  ///< S^(2^squarings) = e^log_scale · lower
+  };
+  Lower lower_triangle(Index grain) const;
+  std::vector<Power> powers(int squarings) const;
 
   const Sides& sides_;
   SplittingWeights weights_;
