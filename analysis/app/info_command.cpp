@@ -11,6 +11,7 @@
 #include "contact/laws.hpp"
 #include "dynamics/engine.hpp"
 #include "io/scene_file.hpp"
+#include "report/table.hpp"
 #include "specimen/lattice.hpp"
 
 namespace eg {
@@ -25,7 +26,6 @@ struct InfoFlags {
 struct ArraySize {
   std::string name;
   std::size_t bytes;
-  bool per_contact;
 };
 
 template <class T>
@@ -34,20 +34,41 @@ std::size_t bytes_of(const T& v) {
 }
 
 std::vector<ArraySize> arrays_of(const State& s, const ForceWorkspace& w) {
-  return {{"position and radius", bytes_of(s.grains.position), false},
-          {"velocity and mass", bytes_of(s.grains.velocity), false},
-          {"spin and inertia", bytes_of(s.grains.spin), false},
-          {"ids", bytes_of(s.grains.id), false},
-          {"materials", bytes_of(s.grains.material), false},
-          {"forces", bytes_of(w.rows), false},
-          {"force schedule", bytes_of(w.schedule.gather_grain) + bytes_of(w.schedule.gather_row), false},
-          {"reference positions", bytes_of(s.list.reference), false},
-          {"neighbour list", bytes_of(s.list.begin) + bytes_of(s.list.j) + bytes_of(s.list.image), false},
+  return {{"position and radius", bytes_of(s.grains.position)},
+          {"velocity and mass", bytes_of(s.grains.velocity)},
+          {"spin and inertia", bytes_of(s.grains.spin)},
+          {"ids", bytes_of(s.grains.id)},
+          {"materials", bytes_of(s.grains.material)},
+          {"forces", bytes_of(w.rows)},
+          {"force schedule", bytes_of(w.schedule.gather_grain) + bytes_of(w.schedule.gather_row)},
+          {"reference positions", bytes_of(s.list.reference)},
+          {"neighbour list", bytes_of(s.list.begin) + bytes_of(s.list.j) + bytes_of(s.list.image)},
           {"contact pairs",
-           bytes_of(s.contacts.i) + bytes_of(s.contacts.j) + bytes_of(s.contacts.image) + bytes_of(w.schedule.target),
-           true},
-          {"contact history", bytes_of(s.contacts.history), true},
-          {"wall contacts", bytes_of(s.wall_contacts), true}};
+           bytes_of(s.contacts.i) + bytes_of(s.contacts.j) + bytes_of(s.contacts.image) + bytes_of(w.schedule.target)},
+          {"contact history", bytes_of(s.contacts.history)},
+          {"walls", bytes_of(s.walls)},
+          {"wall contacts", bytes_of(s.wall_contacts)}};
+}
+
+/// Bytes by array, also over the number of grains and over that of listed contacts; a line with the sum ends it.
+Table memory_table(const State& state, const ForceWorkspace& work) {
+  Table table({{"array"},
+               {"bytes", "bytes", "B"},
+               {"bytes_per_particle", "a particle", "B"},
+               {"bytes_per_contact", "a contact", "B"}});
+  std::size_t pairs = 0, total = 0;
+  for (std::size_t c = 0; c < state.contacts.size(); ++c) pairs += !state.contacts.is_padding(c);
+  pairs += state.wall_contacts.size();
+  const auto add = [&](const std::string& name, std::size_t bytes) {
+    const auto over = [&](std::size_t n) {
+      return n > 0 ? Value(static_cast<double>(bytes) / static_cast<double>(n)) : Value();
+    };
+    table.add({name, static_cast<std::int64_t>(bytes), over(state.grains.size()), over(pairs)});
+    total += bytes;
+  };
+  for (const auto& a : arrays_of(state, work)) add(a.name, a.bytes);
+  add("all", total);
+  return table;
 }
 
 nlohmann::json scene_json(const Scene& scene, const State& state) {
@@ -95,26 +116,14 @@ int info_command(const InfoFlags& flags) {
   if (s.state.grains.size() == 0) s.state = make_specimen(s.scene);
   Engine engine(s.scene, s.state);
   nlohmann::json j = scene_json(s.scene, s.state);
-  if (flags.memory) {
-    double total = 0;
-    const auto n = static_cast<double>(std::max<std::size_t>(1, s.state.grains.size()));
-    for (const auto& a : arrays_of(s.state, engine.workspace())) {
-      total += static_cast<double>(a.bytes);
-      j["memory"].push_back(
-          {{"array", a.name}, {"bytes", a.bytes}, {"bytes_per_particle", static_cast<double>(a.bytes) / n}});
-    }
-    j["bytes_per_particle"] = total / n;
-  }
   if (flags.json) {
+    if (flags.memory) j["memory"] = memory_table(s.state, engine.workspace()).json();
     fmt::print("{}\n", j.dump(2));
     return 0;
   }
   for (const auto& [key, value] : j.items())
-    if (key != "memory") fmt::print("  {:<20}{}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
-  if (flags.memory)
-    for (const auto& row : j["memory"])
-      fmt::print("    {:<22}{:>12} B  {:>8.1f} B a particle\n", row["array"].get<std::string>(),
-                 row["bytes"].get<std::size_t>(), row["bytes_per_particle"].get<double>());
+    fmt::print("  {:<20}{}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
+  if (flags.memory) fmt::print("\n{}", memory_table(s.state, engine.workspace()).text());
   return 0;
 }
 
@@ -125,7 +134,7 @@ void add_info_command(CLI::App& app, Action& action) {
   auto flags = std::make_shared<InfoFlags>();
   sub->add_option("input", flags->input, "scene or snapshot");
   add_settings_option(*sub, flags->settings);
-  sub->add_flag("--memory", flags->memory, "bytes by array");
+  sub->add_flag("--memory", flags->memory, "bytes by array, a particle and a listed contact");
   sub->add_flag("--json", flags->json, "print as JSON");
   sub->callback([flags, &action] { action = [flags] { return info_command(*flags); }; });
 }

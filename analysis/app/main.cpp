@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
   eg::add_stiffness_command(app, action);
   eg::add_waves_command(app, action);
   eg::add_measure_command(app, action);
+  eg::add_plot_command(app, action);
   eg::add_info_command(app, action);
   try {
     check_subcommand(app, argc, argv);

@@ -68,6 +68,7 @@ State make_specimen(const Scene& scene) {
                       fmt::format("is a {}D snapshot in a {}D scene", state.dimension, scene.dimension));
   state.stage = 0, state.step = 0, state.time = 0, state.ledger = {}, state.policy = {}, state.dt = 0;
   state.friction.clear();
+  fit_rotation(scene, state);
   return state;
 }
 

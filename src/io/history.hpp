@@ -14,6 +14,17 @@ struct HistoryColumn {
   std::string name, unit;  ///< header `name [unit]`; neither holds a comma or a line break
 };
 
+/// A history as it was written, column by column.
+struct HistoryTable {
+  std::vector<HistoryColumn> columns;       ///< the first one is `step`
+  std::vector<std::vector<double>> values;  ///< values[column][row]
+
+  /// The column of that name; throws InputError, naming the nearest one, when there is none.
+  std::size_t find(const std::string& name, const std::string& path) const;
+};
+/// Throws InputError when the file is no history; a last row cut short is left out.
+HistoryTable read_history(const std::string& path);
+
 /// Every row is on disk when append() returns. Throws RunError when the file cannot be written.
 class History {
  public:

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "base/error.hpp"
+#include "contact/laws.hpp"
 #include "specimen/lattice.hpp"
 
 namespace eg {
@@ -95,12 +96,20 @@ Grains make_grains(const Scene& scene, const Packing& packing, const Cell& cell)
         if (x[k] >= packing.box[k]) x[k] = 0;  // round-off of a tiny negative coordinate
       }
     const double radius = packing.radius[i];
-    const auto [mass, inertia] = grain_mass(scene.dimension, scene.materials[0].density, radius);
+    const double mass = grain_mass(scene.dimension, scene.materials[0].density, radius).mass;
     grains.position.push_back({x.x, x.y, x.z, radius});
     grains.velocity.push_back({0, 0, 0, 1 / mass});
-    if (scene.rotation) grains.spin.push_back({0, 0, 0, 1 / inertia});
   }
   return grains;
+}
+
+/// Whether any contact can turn a grain: by friction, or by couples of a law that keeps more than the shear force.
+bool grains_can_turn(const Scene& scene) {
+  bool turn = false;
+  with_law(scene.contact.law, [&](auto law) { turn = law.history_vectors > 1 || law.history_scalars > 0; });
+  for (const auto& material : scene.materials) turn = turn || material.friction > 0;
+  for (const auto& stage : scene.stages) turn = turn || stage.friction.value_or(0) > 0;
+  return turn && scene.rotation;
 }
 
 }  // namespace
@@ -111,6 +120,18 @@ GrainMass grain_mass(int dimension, double density, double radius) {
   return {mass, (dimension == 3 ? 0.4 : 0.5) * mass * square};
 }
 
+void fit_rotation(const Scene& scene, State& state) {
+  auto& grains = state.grains;
+  if (!grains_can_turn(scene)) {
+    grains.spin.clear();
+  } else if (!grains.rotates()) {
+    for (std::size_t i = 0; i < grains.size(); ++i) {
+      const auto [mass, inertia] = grain_mass(state.dimension, 1, grains.radius(i));
+      grains.spin.push_back({0, 0, 0, grains.velocity[i].w * mass / inertia});
+    }
+  }
+}
+
 State make_state(const Scene& scene, const Packing& packing) {
   check(scene, packing);
   if (scene.boundary.kind == BoundarySpec::Kind::box) check_inside(scene, packing);
@@ -118,6 +139,7 @@ State make_state(const Scene& scene, const Packing& packing) {
   state.dimension = scene.dimension;
   state.cell = make_cell(scene, packing);
   state.grains = make_grains(scene, packing, state.cell);
+  fit_rotation(scene, state);
   state.walls = make_walls(scene, packing);
   for (const auto& material : scene.materials) state.friction.push_back(material.friction);
   return state;

@@ -17,4 +17,8 @@ GrainMass grain_mass(int dimension, double density, double radius);
 /// Throws InputError when packing and scene do not go together or the box is too narrow.
 State make_state(const Scene&, const Packing&);
 
+/// Gives grains spins (at rest) or takes them away, as the scene needs them: where rotation is off, or no contact can
+/// turn a grain (no friction anywhere, no couples), spins and inertia are not stored at all.
+void fit_rotation(const Scene& scene, State& state);
+
 }  // namespace eg

@@ -54,4 +54,25 @@ TEST_F(HistoryFile, RefusesAnotherHeader) {
   EXPECT_THROW(eg::History::resume(path, columns, 0), eg::InputError);
 }
 
+TEST_F(HistoryFile, ReadsBackWhatWasWritten) {
+  {
+    auto history = eg::History::create(path, columns);
+    append(history, 3), append(history, 7);
+  }
+  eg::write_file(path, eg::read_file(path) + "9,0.9");  // a run that is still writing
+  const auto table = eg::read_history(path);
+  ASSERT_EQ(table.columns.size(), 3u);
+  EXPECT_EQ(table.columns[2].name, "mean stress");
+  EXPECT_EQ(table.columns[2].unit, "Pa");
+  EXPECT_EQ(table.find("time", path), 1u);
+  EXPECT_EQ(table.values[0], (std::vector<double>{3, 7}));
+  EXPECT_EQ(table.values[1], (std::vector{0.1 * 3, 0.1 * 7}));
+  EXPECT_EQ(table.values[2][1], 1e5 / 8);
+  EXPECT_THROW(table.find("tim", path), eg::InputError);
+  for (const char* wrong : {"", "1 2 3\n", "a [-],b [-]\n1\n", "a [-]\nx\n"}) {
+    eg::write_file(path, wrong);
+    EXPECT_THROW(eg::read_history(path), eg::InputError) << wrong;
+  }
+}
+
 }  // namespace

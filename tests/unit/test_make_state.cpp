@@ -213,3 +213,21 @@ TEST(MakeState, ErrorsNameTheRule) {
                 .find("specimen.count = 0"),
             std::string::npos);
 }
+
+TEST(MakeState, GrainsThatNothingCanTurnHaveNoSpin) {
+  Scene scene = quartz_fcc();
+  EXPECT_TRUE(state_of(scene).grains.rotates());
+  for (auto& m : scene.materials) m.friction = 0;
+  State smooth = state_of(scene);
+  EXPECT_FALSE(smooth.grains.rotates());
+  scene.stages.emplace_back().friction = 0.1;
+  EXPECT_TRUE(state_of(scene).grains.rotates());
+  fit_rotation(scene, smooth);  // a smooth packing goes on with friction
+  ASSERT_TRUE(smooth.grains.rotates());
+  EXPECT_NEAR(smooth.grains.spin[5].w / state_of(scene).grains.spin[5].w, 1, 1e-14);
+  smooth.grains.spin[5].x = 3;
+  fit_rotation(scene, smooth);
+  EXPECT_EQ(smooth.grains.spin[5].x, 3);  // kept
+  scene.rotation = false;
+  EXPECT_FALSE(state_of(scene).grains.rotates());
+}

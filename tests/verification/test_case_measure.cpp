@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -82,6 +83,47 @@ TEST_F(MeasureCommand, ASnapshotGivesTheLastRowOfItsHistory) {
     output("measure " + run.file("final.h5") + " --plot " + plot + " --figure " + file(std::string(plot) + ".pdf"));
     EXPECT_GT(std::filesystem::file_size(file(std::string(plot) + ".pdf")), 1000u) << plot;
   }
+}
+
+TEST_F(MeasureCommand, HistoriesArePlottedAndAveraged) {
+  std::filesystem::create_directories(folder / "a");
+  const std::string history = file("a/history.csv");
+  write_file(history,
+             "step [-],stage [-],strain_z [-],deviator [Pa],mean_stress [Pa]\n"
+             "1,1,0.5,7,1\n2,2,0.1,10,100\n3,2,0.2,20,100\n4,2,0.3,40,100\n");
+  const std::string command = "plot " + history + " --stage 2 --x strain_z --y deviator/mean_stress --json --figure ";
+  const json curve = json::parse(output(command + file("curve.svg")), nullptr, false);
+  ASSERT_TRUE(curve.is_array());
+  EXPECT_EQ(curve[0]["label"], "a");
+  EXPECT_EQ(curve[0]["strain_z [-]"], (std::vector{0.1, 0.2, 0.3}));
+  EXPECT_EQ(curve[0]["deviator/mean_stress [-]"], (std::vector{0.1, 0.2, 0.4}));
+  const json mean = json::parse(output(command + file("mean.pdf") + " --mean-over strain_z=0.15:1"), nullptr, false);
+  ASSERT_TRUE(mean.is_array());
+  EXPECT_NEAR(mean[0]["deviator/mean_stress"].get<double>(), 0.3, 1e-15);
+  EXPECT_NEAR(mean[0]["deviator/mean_stress_scatter"].get<double>(), 0.1, 1e-15);
+  EXPECT_NEAR(mean[0]["strain_z"].get<double>(), 0.25, 1e-15);
+  EXPECT_NE(read_file(file("curve.svg")).find("<svg"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(file("mean.pdf")));
+}
+
+TEST_F(MeasureCommand, MemoryHoldsOnlyWhatTheSceneNeeds) {
+  const auto memory = [](const std::string& scene, const std::string& settings) {
+    const json j = json::parse(output("info --memory --json " + test::case_file(scene) + settings), nullptr, false);
+    std::map<std::string, double> bytes;
+    for (const auto& row : j.at("memory")) {
+      bytes[row.at("array")] = row.at("bytes");
+      EXPECT_NEAR(row.at("bytes_per_particle").get<double>() * 200, row.at("bytes").get<double>(), 1e-6);
+    }
+    return bytes;
+  };
+  auto smooth = memory("frictionless_limit", " --set specimen.count=200");
+  for (const char* none : {"spin and inertia", "materials", "contact history", "walls", "wall contacts"})
+    EXPECT_EQ(smooth.at(none), 0) << none;
+  EXPECT_EQ(smooth.at("position and radius"), 200 * 32);
+  auto rough = memory("isotropic_compression", " --set specimen.count=200");
+  EXPECT_EQ(rough.at("spin and inertia"), 200 * 32);
+  EXPECT_EQ(rough.at("walls"), 0);
+  EXPECT_GT(rough.at("all"), smooth.at("all"));
 }
 
 TEST_F(MeasureCommand, EveryKeyIsDocumented) {
