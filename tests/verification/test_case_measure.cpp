@@ -85,23 +85,6 @@ TEST_F(MeasureCommand, ASnapshotGivesTheLastRowOfItsHistory) {
   }
 }
 
-TEST_F(MeasureCommand, ConstantPTriaxialHoldsItsMeanStressAndGrowsAnisotropic) {
-  const test::CaseRun run("constant_p_triaxial",
-                          "--set specimen.count=300 --set stage[4].strain_rate.inertial_number=2.5e-3 "
-                          "--set stage[4].until.axial_strain=0.03");
-  ASSERT_TRUE(run.complete());
-  const auto stage = run.column("stage"), p = run.column("mean_stress"), q = run.column("deviator");
-  const auto fabric = run.column("fabric_deviator"), inertia = run.column("inertial_number");
-  double mean = 0, rows = 0;
-  for (std::size_t k = 0; k < p.size(); ++k)
-    if (stage[k] == 4) mean += p[k], ++rows;
-  EXPECT_GE(rows, 12);
-  EXPECT_NEAR(mean / rows / 100e3, 1, 0.01);
-  EXPECT_GT(q.back() / p.back(), 0.4);
-  EXPECT_GT(fabric.back(), 0.02);
-  EXPECT_NEAR(inertia.back() / 2.5e-3, 1, 0.02);
-}
-
 TEST_F(MeasureCommand, HistoriesArePlottedAndAveraged) {
   std::filesystem::create_directories(folder / "a");
   const std::string history = file("a/history.csv");
