@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "contact/lanes.hpp"
 
@@ -28,19 +29,21 @@ StiffnessOperator::StiffnessOperator(const Network& network, Scaling scaling)
 void StiffnessOperator::build_links(const Network& network) {
   std::vector<std::size_t> order(network.springs.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return network.springs[a].i < network.springs[b].i; });
+  // The schedule wants the grain of the earlier chunk first: a spring numbered the other way is turned round.
+  const auto low = [&](std::size_t c) { return std::min(network.springs[c].i, network.springs[c].j); };
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return low(a) < low(b); });
 
   std::vector<std::uint64_t> chunk_begin{0};
   auto next = order.begin();
   for (std::size_t first = 0; first < grains_; first += chunk_grains) {
     const auto own = static_cast<Index>(first);
-    for (std::size_t lane = 0; next != order.end() && network.springs[*next].i < first + chunk_grains; ++next, ++lane) {
+    for (std::size_t lane = 0; next != order.end() && low(*next) < first + chunk_grains; ++next, ++lane) {
       if (lane % lanes == 0) {
         links_.emplace_back();
         i_.resize(lanes * links_.size(), own), j_.resize(lanes * links_.size(), own);
       }
-      const Spring& s = network.springs[*next];
+      Spring s = network.springs[*next];
+      if (s.j < s.i) std::swap(s.i, s.j), std::swap(s.arm_i, s.arm_j), s.n = -s.n;
       Links& to = links_.back();
       const std::size_t k = lane % lanes, at = lanes * (links_.size() - 1) + k;
       i_[at] = s.i, j_[at] = s.j == no_index ? static_cast<Index>(grains_) : s.j;

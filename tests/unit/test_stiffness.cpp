@@ -125,5 +125,21 @@ TEST(StiffnessOperator, SameBitsForAnyNumberOfThreads) {
   omp_set_num_threads(threads);
 }
 
+TEST(StiffnessOperator, GrainsNumberedInAnyOrder) {
+  auto network = test::lattice_network("sc", 13, 1, .7, true);  // 2197 grains: three chunks
+  Random random(5);
+  for (auto& s : network.springs) {
+    s.n = s.n * (1 / norm(s.n)), s.arm_i = random.uniform(.4, .6), s.arm_j = 1 - s.arm_i;
+    if (random.uniform() < .5) std::swap(s.i, s.j), std::swap(s.arm_i, s.arm_j), s.n = -s.n;
+  }
+  const StiffnessOperator a(network, StiffnessOperator::Scaling::none);
+  const Eigen::SparseMatrix<double> k = stiffness_matrix(network);
+  const auto x = random_unit_vector(a.rows(), 3);
+  std::vector<double> y(x.size());
+  a.apply(x, y);
+  const Eigen::VectorXd expected = k * Eigen::Map<const Eigen::VectorXd>(x.data(), k.cols());
+  EXPECT_LE((Eigen::Map<const Eigen::VectorXd>(y.data(), k.rows()) - expected).norm(), 1e-13 * expected.norm());
+}
+
 }  // namespace
 }  // namespace eg
