@@ -8,6 +8,7 @@ void add_waves_command(CLI::App& app, Action& action) {
   waves->require_subcommand(1);
   add_waves_dispersion(*waves, action);
   add_waves_modes(*waves, action);
+  add_waves_transmit(*waves, action);
 }
 
 }  // namespace eg

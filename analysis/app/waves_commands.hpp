@@ -6,5 +6,6 @@ namespace eg {
 
 void add_waves_dispersion(CLI::App& waves, Action& action);
 void add_waves_modes(CLI::App& waves, Action& action);
+void add_waves_transmit(CLI::App& waves, Action& action);
 
 }  // namespace eg

@@ -13,6 +13,8 @@
 #include "base/progress.hpp"
 #include "io/hdf5_file.hpp"
 #include "report/table.hpp"
+#include "stiffness/elastic_tensor.hpp"
+#include "stiffness/relaxation.hpp"
 #include "waves/dispersion.hpp"
 #include "waves/unit_cell.hpp"
 
@@ -28,7 +30,8 @@ struct DispersionFlags {
 struct Slope {
   std::string name;  ///< of the point that the direction leads to
   Vec3 direction;
-  std::vector<double> speeds;  ///< [m/s]
+  std::vector<double> speeds;   ///< of Bloch waves, slowest first [m/s]
+  std::vector<double> elastic;  ///< of the elastic tensor, likewise
 };
 
 struct DispersionReport {
@@ -67,17 +70,36 @@ UnitCell unit_cell_of(const Snapshot& work, const std::string& input) {
   return unit;
 }
 
+/// Elastic tensor of the unit cell and its density: what long waves must follow.
+struct Continuum {
+  ElasticTensor tensor;
+  double density = 0;  ///< [kg/m³]
+};
+
+Continuum continuum_of(const UnitCell& unit) {
+  const double volume = std::abs(determinant(unit.edges));
+  const int dimension = unit.network.dimension;
+  Continuum c{{dimension, relax(unit.network, periodic_strains(dimension), volume).total()}, 0};
+  for (const double inverse : unit.network.inverse_mass) c.density += inverse > 0 ? 1 / (inverse * volume) : 0;
+  return c;
+}
+
 /// Long waves along every leg of the path that begins or ends at Γ.
 std::vector<Slope> slopes_of(const DispersionReport& r, const Mat3& edges) {
   std::vector<Slope> slopes;
   const double edge = std::cbrt(std::abs(determinant(r.unit.edges)));
+  const Continuum continuum = continuum_of(r.unit);
   const auto at_origin = [](const ZonePoint& p) { return norm(p.reduced) == 0; };
   for (std::size_t leg = 0; leg + 1 < r.path.size(); ++leg) {
     const bool from = at_origin(r.path[leg]), to = at_origin(r.path[leg + 1]);
     if (from == to) continue;
     const ZonePoint& end = from ? r.path[leg + 1] : r.path[leg];
     const Vec3 k = wave_vector(edges, end.reduced);
-    slopes.push_back({end.name, k * (1 / norm(k)), long_wave_speeds(r.unit.network, k, edge)});
+    const Vec3 n = k * (1 / norm(k));
+    Slope slope{end.name, n, long_wave_speeds(r.unit.network, k, edge), {}};
+    const auto elastic = wave_speeds(continuum.tensor, continuum.density, n).speed;
+    for (auto m = slope.speeds.size(); m-- > 0;) slope.elastic.push_back(elastic[m]);
+    slopes.push_back(slope);
   }
   return slopes;
 }
@@ -98,11 +120,15 @@ Table slope_table(const DispersionReport& r) {
            {"direction"},
            {"speed_1", "slowest", "m/s", 7},
            {"speed_2", "", "m/s", 7},
-           {"speed_3", "fastest", "m/s", 7}});
+           {"speed_3", "fastest", "m/s", 7},
+           {"elastic", "by the elastic tensor", "m/s"}});
   for (const auto& s : r.slopes) {
     const auto& n = s.direction;
     std::vector<Value> row{shown_name(s.name), fmt::format("{:.3f} {:.3f} {:.3f}", n.x, n.y, n.z)};
     for (std::size_t k = 0; k < 3; ++k) row.push_back(k < s.speeds.size() ? Value(s.speeds[k]) : Value());
+    std::string elastic;
+    for (const double c : s.elastic) elastic += fmt::format("{}{:.7g}", elastic.empty() ? "" : "  ", c);
+    row.push_back(elastic);
     t.add(row);
   }
   return t;
@@ -148,7 +174,10 @@ nlohmann::json json_of(const DispersionReport& r) {
     j["points"].push_back(row);
   }
   for (const auto& s : r.slopes)
-    j["long_waves"].push_back({{"towards", s.name}, {"direction", vector(s.direction)}, {"speeds_m_per_s", s.speeds}});
+    j["long_waves"].push_back({{"towards", s.name},
+                               {"direction", vector(s.direction)},
+                               {"speeds_m_per_s", s.speeds},
+                               {"elastic_speeds_m_per_s", s.elastic}});
   return j;
 }
 
