@@ -27,6 +27,10 @@ Table arrival_table(const TransmitReport& r) {
 
 double group_speed(const TransmitReport& r) { return r.arrivals.back().speed; }
 
+/// Above the slowest branch of transverse waves another one may carry on; longitudinal waves have but one along an
+/// axis.
+bool top_matters(const TransmitReport& r) { return r.branch && r.setup.axis == r.setup.motion; }
+
 std::string beside(double measured, double exact) {
   return fmt::format("{:.6g} m/s, dispersion {:.6g} m/s ({:+.2f} %)", measured, exact, 100 * (measured / exact - 1));
 }
@@ -37,9 +41,10 @@ std::optional<TransmitReport::Ridge> TransmitReport::ridge_error() const {
   if (!branch || !map) return {};
   Ridge out;
   for (std::size_t row = 0; row < ridge.size(); ++row) {
-    const double exact = branch->wave_number(map->f_step * static_cast<double>(row));
+    const double f = map->f_step * static_cast<double>(row), exact = branch->wave_number(f);
     const double bin = 2 * std::numbers::pi / (test.spacing * static_cast<double>(test.traces.size()));
     if (std::isnan(ridge[row]) || std::isnan(exact) || exact < 4 * bin) continue;
+    if (!(branch->group_speed(f) * setup.duration > 0.5 * test.traces.back().distance)) continue;
     const double error = std::abs(ridge[row] / exact - 1);
     out.mean += error, out.worst = std::max(out.worst, error), ++out.rows;
   }
@@ -62,7 +67,7 @@ std::string text_of(const TransmitReport& r) {
                                 (far.distance - near.distance) / r.wavelength));
   line("test", fmt::format("{:.4g} s in {} steps of {:.4g} s{}", s.duration, r.test.steps, s.dt,
                            r.test.subtracted ? ", motion without source subtracted" : ""));
-  out += "\n" + arrival_table(r).text() + "\n";
+  out += fmt::format("\n{}\n", arrival_table(r).text());
   const double f = s.signal.frequency;
   if (r.branch && !std::isnan(r.branch->phase_speed(f))) {
     line("phase speed", beside(r.phase_speed, r.branch->phase_speed(f)));
@@ -71,10 +76,11 @@ std::string text_of(const TransmitReport& r) {
     line("phase speed", fmt::format("{:.6g} m/s", r.phase_speed));
   }
   if (!std::isnan(r.cutoff))
-    line("cut-off", fmt::format("{:.6g} Hz{}", r.cutoff,
-                                r.branch ? fmt::format(", top of the branch {:.6g} Hz ({:+.2f} %)", r.branch->highest(),
-                                                       100 * (r.cutoff / r.branch->highest() - 1))
-                                         : ""));
+    line("cut-off",
+         fmt::format("{:.6g} Hz{}", r.cutoff,
+                     top_matters(r) ? fmt::format(", top of the branch {:.6g} Hz ({:+.2f} %)", r.branch->highest(),
+                                                  100 * (r.cutoff / r.branch->highest() - 1))
+                                    : ""));
   if (const auto ridge = r.ridge_error())
     line("ridge of the map", fmt::format("{} frequencies, {:.2f} % from the dispersion on average, {:.2f} % at most",
                                          ridge->rows, 100 * ridge->mean, 100 * ridge->worst));

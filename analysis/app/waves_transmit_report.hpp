@@ -30,8 +30,8 @@ struct TransmitReport {
   std::vector<std::string> warnings;
   double elapsed = 0, memory = 0;  ///< [s], [bytes]
 
-  /// Largest and mean distance of the ridge from the branch over k, where k is at least four of the wave numbers that
-  /// the length of the test tells apart.
+  /// Largest and mean distance of the ridge from the branch over k, at the frequencies whose waves have passed half of
+  /// the layers and where k is at least four of the wave numbers that the length of the test tells apart.
   struct Ridge {
     double mean = 0, worst = 0;
     int rows = 0;

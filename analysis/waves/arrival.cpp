@@ -34,7 +34,7 @@ double start_of(std::span<const double> u) {
 }
 
 double peak_of(std::span<const double> u) {
-  const double level = 0.6 * largest(u);
+  const double level = 0.6 * *std::ranges::max_element(u);
   for (std::size_t k = 1; k + 1 < u.size(); ++k)
     if (u[k] > level && u[k] >= u[k - 1] && u[k] > u[k + 1])
       return static_cast<double>(k) + top_of(u[k - 1], u[k], u[k + 1]);

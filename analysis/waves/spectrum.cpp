@@ -74,7 +74,7 @@ WaveMap wave_map(const std::vector<std::span<const double>>& traces, double inte
   const double loudest = *std::ranges::max_element(most);
   for (std::size_t row = 0; row < map.rows; ++row)
     for (std::size_t c = 0; c < map.columns; ++c)
-      map.value[row * map.columns + c] *= most[row] > 1e-3 * loudest ? 1 / most[row] : 0;
+      map.value[row * map.columns + c] *= most[row] > 1e-2 * loudest ? 1 / most[row] : 0;
   return map;
 }
 
