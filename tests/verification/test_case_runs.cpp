@@ -63,7 +63,9 @@ TEST(Case, Demo) {
   EXPECT_TRUE(run.result().at("warnings").empty()) << run.result().at("warnings");
   const json j = json::parse(output("timestep --verify --json " + run.file("final.h5")), nullptr, false);
   ASSERT_TRUE(j.is_object());
-  EXPECT_LE(j.at("verification").at("dt_stable").get<double>(), j.at("dt_limit_upper").get<double>());
+  // just above the limit motion grows too slowly for the steps that are watched: they tell it to 0.02 %
+  // (docs/timestep.md)
+  EXPECT_LE(j.at("verification").at("dt_stable").get<double>(), (1 + 2e-4) * j.at("dt_limit_upper").get<double>());
   EXPECT_GE(j.at("verification").at("dt_unstable").get<double>(), j.at("dt_safe").get<double>());
 }
 
