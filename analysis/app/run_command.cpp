@@ -103,6 +103,9 @@ nlohmann::json result_json(const Scene& scene, const State& state, const Control
                            const Recorder& recorder) {
   const Homogenised h = homogenise(scene, state);
   const auto s = stress_components(state);
+  nlohmann::json causes;
+  for (std::size_t c = 0; c < step_causes; ++c)
+    causes[step_cause_name(static_cast<StepCause>(c))] = log.evaluations[c];
   nlohmann::json j{{"title", scene.title},
                    {"version", version()},
                    {"steps", state.step},
@@ -119,7 +122,8 @@ nlohmann::json result_json(const Scene& scene, const State& state, const Control
                    {"unbalanced_force", h.unbalanced_force},
                    {"dt_s", state.dt},
                    {"dt_certified_s", state.policy.safe},
-                   {"certificate_evaluations", log.evaluations},
+                   {"certificate_evaluations", log.all_evaluations()},
+                   {"certificate_causes", causes},{"checks",log.checks},{"examined",log.examined},{"outgrown",log.outgrown},
                    {"certificate_share", seconds > 0 ? log.seconds / seconds : 0.0},
                    {"elapsed_s", seconds},
                    {"warnings", recorder.warnings()}};

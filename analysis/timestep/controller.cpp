@@ -5,36 +5,23 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 
 #include "assembly/linearise.hpp"
 #include "base/error.hpp"
 #include "state/damping.hpp"
 #include "timestep/damped_interval.hpp"
 #include "timestep/estimates.hpp"
-#include "timestep/scalar_weights.hpp"
+#include "timestep/splitting.hpp"
 
 namespace eg {
 namespace {
 
-constexpr std::uint64_t shortest = 20, longest = 1000;  // steps of a horizon
-constexpr double calm = 1.03, wild = 1.12;              // growth of λ over the horizon: lengthen below, shorten above
-constexpr double closing_margin = 1.5;                  // forecast over present closing speed
-
-/// How much the overlap of a pair can grow in `time`, from its present closing speed.
-OverlapGrowth closing(const State& state, double time) {
-  return [&state, time](Index i, Index j, const Geometry<double>& g) {
-    const auto& grains = state.grains;
-    Vec3 relative = -grains.velocity[i].vec();
-    if (j == no_index) {
-      double wall = 0;
-      for (const auto& w : state.walls) wall = std::max(wall, norm(w.velocity));
-      return closing_margin * time * (std::max(0.0, -dot(relative, g.n)) + wall);
-    }
-    const double distance = grains.radius(i) + grains.radius(j) - g.overlap;
-    relative += grains.velocity[j].vec() + state.cell.rate * (g.n * distance);
-    return closing_margin * time * std::max(0.0, -dot(relative, g.n));
-  };
-}
+constexpr std::uint64_t ahead = 64;           // steps from one check to the next
+constexpr std::uint64_t youngest = 500, oldest = 4000;  // steps that a bound may live
+constexpr double slack = 0.1;                 // of an overlap: 5 % of the stiffness of a Hertz contact
+constexpr double least_room = 0.05, most_room = 0.25;
+constexpr double gain = 1.04;                           // of the step, from which on a renewal was worth its cost
 
 /// The safety factor times the named rule.
 double estimated_step(const Scene& scene, const Network& net, const std::string& name) {
@@ -53,13 +40,16 @@ double estimated_step(const Scene& scene, const Network& net, const std::string&
                   scene.file, name, fmt::join(names, ", ")));
 }
 
-/// As λmax is now, seen from below; what it is held against must be seen from below too.
-double present_self_block(const Scene& scene, const State& state) {
-  const Network net = linearise(scene, state);
-  return largest_self_block(Sides(net));
+}  // namespace
+
+std::string step_cause_name(StepCause cause) {
+  static constexpr std::array<const char*, step_causes> names{"start", "stage", "growth", "renewal", "rebuild"};
+  return names[static_cast<std::size_t>(cause)];
 }
 
-}  // namespace
+std::uint64_t ControllerLog::all_evaluations() const {
+  return std::accumulate(evaluations.begin(), evaluations.end(), std::uint64_t{0});
+}
 
 double Controller::free_limit(const State& state) const {
   const auto lightest = std::max_element(state.grains.velocity.begin(), state.grains.velocity.end(),
@@ -84,39 +74,79 @@ double Controller::free_limit(const State& state) const {
   });
 }
 
-void Controller::evaluate(State& state) {
-  const auto begin = std::chrono::steady_clock::now();
+void Controller::choose(State& state) {
   auto& plan = state.policy;
-  if (plan.horizon == 0) plan.horizon = shortest;
-  const double dt = plan.dt > 0 ? plan.dt : state.dt > 0 ? state.dt : 0.0;
-  const Network net = linearise(scene_, state, closing(state, static_cast<double>(plan.horizon) * dt));
-  const double cap = free_limit(state);
-  const Sides sides(net);
-  const auto bound = [](const Network& n) {
-    return splitting_bound(n, {.scalar_sweeps = 8, .matrix_sweeps = 0}).value;
-  };
-  plan.safe = std::min(cap, damped_safe_step(net, damping_in_force(scene_, state), plan.safe, bound));
   const auto& spec = scene_.timestep;
   if (spec.policy == "certified")
     plan.dt = spec.safety * plan.safe;
   else if (spec.policy == "fixed")
     plan.dt = spec.fixed;
   else
-    plan.dt =
-        std::min(spec.safety * estimated_step(scene_, net, spec.policy.substr(std::string("estimate:").size())), cap);
+    plan.dt = std::min(spec.safety * estimated_step(scene_, linearise(scene_, state),
+                                                    spec.policy.substr(std::string("estimate:").size())),
+                       free_limit(state));
+}
 
-  plan.due = state.step + plan.horizon;
-  const double growth = plan.safe < cap ? largest_self_block(sides) / present_self_block(scene_, state) : 1.0;
-  if (growth > wild) plan.horizon = std::max(shortest, plan.horizon / 2);
-  if (growth < calm) plan.horizon = std::min(longest, plan.horizon * 3 / 2);
+void Controller::evaluate(State& state, StepCause cause) {
+  auto& plan = state.policy;
+  const std::uint64_t age = state.step - plan.made;
+  if (plan.lifetime == 0) plan.lifetime = youngest, plan.room = 2 * least_room;
+  if (cause == StepCause::growth && age < youngest) plan.room = std::min(most_room, plan.room * 1.5);
+  if (cause == StepCause::renewal && age >= 2 * youngest) plan.room = std::max(least_room, plan.room / 1.25);
+
+  const double cap = free_limit(state), before = plan.safe;
+  const double dt = plan.dt > 0 ? plan.dt : scene_.timestep.safety * cap;
+  const double time = static_cast<double>(ahead) * dt;
+  const DampingSpec damping = damping_in_force(scene_, state);
+  double lower = 0;
+  const auto renew = [&](double step) {
+    lower = bounds_.renew(state, {time, slack, plan.room, 4 / (cap * cap), step});
+    plan.safe = std::min(cap, proved_damped_step(plan.bound.value, damping, step));
+  };
+  renew(before > 0 ? before : cap);
+  if (damping.dashpots() && std::abs(plan.safe - plan.bound.step) > 0.05 * plan.safe) renew(plan.safe);
+  plan.unsafe = refuted_damped_step(lower, damping, plan.bound.step);
+  choose(state);
+
+  if (cause == StepCause::renewal)
+    plan.lifetime =
+        plan.safe > gain * before ? std::max(youngest, plan.lifetime / 2) : std::min(oldest, plan.lifetime * 2);
+  plan.cause = static_cast<int>(cause);
+  plan.made = state.step;
+  plan.due = state.step + plan.lifetime;
+  plan.check = state.step + static_cast<std::uint64_t>(std::clamp(time / plan.dt, 1.0, double{ahead}));
+  plan.refreshes = state.list.refreshes;
   log_.worst_ratio = std::max(log_.worst_ratio, plan.dt / plan.safe);
-  ++log_.evaluations;
-  log_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  ++log_.evaluations[static_cast<std::size_t>(cause)];
+  if (on_change) on_change(state);
+}
+
+bool Controller::still_stands(State& state) {
+  auto& plan = state.policy;
+  const auto result = bounds_.check(state, static_cast<double>(ahead) * plan.dt, slack);
+  ++log_.checks;
+  log_.examined += result.examined;
+  plan.check = state.step + ahead;
+  log_.outgrown += result.outgrown;
+  return result.stands;
 }
 
 double Controller::next_step(State& state) {
-  if (state.policy.dt == 0 || state.step >= state.policy.due) evaluate(state);
-  return state.policy.dt;
+  auto& plan = state.policy;
+  const bool refreshed = plan.refreshes != state.list.refreshes;
+  if (plan.dt > 0 && !refreshed && state.step < plan.check && state.step < plan.due) return plan.dt;
+
+  const auto begin = std::chrono::steady_clock::now();
+  if (plan.dt == 0)
+    evaluate(state, state.step == 0 ? StepCause::start : StepCause::stage);
+  else if (refreshed && !bounds_.follow(state))
+    evaluate(state, StepCause::rebuild);
+  else if (state.step >= plan.due)
+    evaluate(state, StepCause::renewal);
+  else if (plan.refreshes = state.list.refreshes; !still_stands(state))
+    evaluate(state, StepCause::growth);
+  log_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return plan.dt;
 }
 
 }  // namespace eg

@@ -1,39 +1,63 @@
 #pragma once
 // Chooses the step during a run, as [timestep] of the scene says.
+#include <array>
+#include <functional>
 #include <string>
 
 #include "dynamics/run.hpp"
-#include "state/scene.hpp"
-#include "timestep/splitting.hpp"
+#include "timestep/standing_bound.hpp"
 
 namespace eg {
 
-/// What the controller has seen, for the report of the run.
+/// Why the step was chosen anew.
+enum class StepCause : int {
+  start,    ///< of the run
+  stage,    ///< another stage began
+  growth,   ///< contacts outgrew what the bound allows them
+  renewal,  ///< the bound was old, 
+  rebuild,  ///< the grains were sorted anew
+};
+inline constexpr std::size_t step_causes = 5;
+std::string step_cause_name(StepCause cause);
+
+/// What the controller has done, for the report of the run.
 struct ControllerLog {
-  std::uint64_t evaluations = 0;
-  double seconds = 0;      ///< spent on evaluations
-  double worst_ratio = 0;  ///< largest step taken over the certified limit in force [-]
+  std::array<std::uint64_t, step_causes> evaluations{};  ///< by cause
+  std::uint64_t checks = 0;    ///< that the bound still stands
+  std::uint64_t outgrown = 0;  ///< contacts that checks found to outgrow what they were allowed
+  std::uint64_t examined = 0;  ///< grains worked out afresh in checks
+  double seconds = 0;          ///< spent on all of it
+  double worst_ratio = 0;      ///< largest step chosen over the certified limit in force [-]
+  double outrun = 0;           ///< largest step over the limit certified afterwards, where contacts outran a forecast [-]
+  std::uint64_t outruns = 0;   ///< how often they did
+
+  std::uint64_t all_evaluations() const;
 };
 
 /// policy "certified": dt = safety × certified limit; "fixed": the given dt; "estimate:NAME": safety × that rule of
 /// thumb. All of them are held against the certified limit.
 ///
-/// The certificate is the contact-splitting bound of the springs as they can be at the end of the horizon: every listed
-/// pair at the overlap it reaches with half as much again as its present closing speed. λmax is monotone in every
-/// stiffness and in the set of contacts, so the bound holds for all steps in between unless a contact outruns that
-/// forecast; safety < 1 covers this. The step never exceeds that of the lightest grain with twelve contacts at an
-/// overlap of 1e-6 radii, which governs while little or nothing touches.
+/// The certificate is a StandingBound: a bound of λmax with some room, checked every few dozen steps and whenever the
+/// list of contacts changes, at the overlaps that pairs can reach until the next check with half as much again as their
+/// present closing speed. When a check fails, or the bound is old, it is renewed. The step never exceeds that of the
+/// lightest grain with twelve contacts at an overlap of 1e-6 radii, which governs while little or nothing touches.
 class Controller final : public StepPolicy {
  public:
-  explicit Controller(const Scene& scene) : scene_(scene) {}
+  explicit Controller(const Scene& scene) : scene_(scene), bounds_(scene) {}
+  void begin(const State& state) override { bounds_.remember(state); }
   double next_step(State& state) override;
   const ControllerLog& log() const { return log_; }
+  /// Called after every evaluation, with state.policy as it then is.
+  std::function<void(const State&)> on_change;
 
  private:
-  void evaluate(State& state);
+  void evaluate(State& state, StepCause cause);
+  void choose(State& state);
+  bool still_stands(State& state);
   double free_limit(const State& state) const;
 
   const Scene& scene_;
+  StandingBounds bounds_;
   ControllerLog log_;
 };
 

@@ -64,6 +64,17 @@ DampedInterval damped_interval(const Network& network, const DampingSpec& dampin
   return v;
 }
 
+double proved_damped_step(double lambda, const DampingSpec& damping, double step) {
+  if (!damping.dashpots()) return neutral_step(lambda, damping.mass) * (1 - rounding);
+  return proved_step(lambda, step, damping.mass);
+}
+
+double refuted_damped_step(double lambda, const DampingSpec& damping, double step) {
+  const double longer = 4 / (step * lambda + 2 * damping.mass);  // K + 2C/Δt shrinks by step/Δt at most
+  const bool use = damping.dashpots() && longer >= step;
+  return (use ? longer : neutral_step(lambda, damping.mass)) * (1 + rounding);
+}
+
 double damped_safe_step(const Network& network, const DampingSpec& damping, double guess,
                         const std::function<double(const Network&)>& bound) {
   const auto plain = [&] { return neutral_step((1 + damping.local) * bound(network), damping.mass) * (1 - rounding); };

@@ -23,6 +23,11 @@ struct DampedInterval {
 DampedInterval damped_interval(const Network& network, const DampingSpec& damping, const StepInterval& undamped,
                                const IntervalOptions& options = {});
 
+/// The step [s] below which no mode grows, given λ ≥ λmax of the network damped at `step` (damped_network); the largest
+/// step at which none may, given λ ≤ λmax of it.
+double proved_damped_step(double lambda, const DampingSpec& damping, double step);
+double refuted_damped_step(double lambda, const DampingSpec& damping, double step);
+
 /// The lower end alone, for use during a run. `bound` gives a proved upper bound of λmax of a network [1/s²]. With
 /// dashpots it is asked again until two steps agree to 0.5 %, at most four times; `guess` is a step to begin with [s],
 /// or 0.

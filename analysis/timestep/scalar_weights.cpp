@@ -99,11 +99,13 @@ ScalarWeights sweep_scalars(const Sides& sides, const ScalarSweepOptions& option
   ScalarWeights weights{std::vector(springs.size(), 1.0), BlockRanges(sides.size()), 0, 0};
   const std::vector<Index> all = all_grains(sides);
   weights.known = self_blocks(sides, all, weights.ranges);
-  if (options.most > 0)
+  if (!options.start.empty())
+    weights.t.assign(options.start.begin(), options.start.end());
+  else if (options.most > 0)
     for (std::size_t c = 0; c < springs.size(); ++c)
       if (sides.is_split(c)) even_out(springs[c], weights.ranges.low, weights.t[c]);
   block_ranges(sides, weights.t, all, weights.ranges);
-  weights.sweeps = std::min(options.most, 1);
+  weights.sweeps = options.start.empty() ? std::min(options.most, 1) : 0;
   HotSet set(sides);
   set.add(weights.ranges, weights.known, all);
   sweep_hot(sides, options, set, weights);

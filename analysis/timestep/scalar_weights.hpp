@@ -1,5 +1,6 @@
 #pragma once
 // Scalar weights of contact splitting: the part of the bound that is cheap enough for every few hundred steps of a run.
+#include <span>
 #include <vector>
 
 #include "timestep/block_ranges.hpp"
@@ -16,6 +17,7 @@ struct ScalarWeights {
 struct ScalarSweepOptions {
   int most = 30;      ///< sweeps; they end earlier when the bound stands still …
   double target = 0;  ///< … or has come down to this [1/s²]
+  std::span<const double> start = {};  ///< weights to begin with, one a spring; empty: 1
 };
 
 /// The largest eigenvalue of a self block Σ AᵀA [1/s²], a few per cent low at most: λmax(M⁻¹K) is not below.

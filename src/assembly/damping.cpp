@@ -4,25 +4,38 @@
 
 namespace eg {
 
+namespace {
+
+/// The spring as a dashpot.
+Spring dashpot(Spring s, double inverse_mass, const DampingSpec& damping) {
+  const double mass = inverse_mass > 0 ? 1 / inverse_mass : 0.0;
+  s.normal = 2 * damping.normal_ratio * std::sqrt(mass * s.normal);
+  s.tangential = 2 * damping.shear_ratio * std::sqrt(mass * s.tangential);
+  return s;
+}
+
+double inverse_mass(const Network& network, const Spring& s) {
+  return network.inverse_mass[s.i] + (s.j == no_index ? 0.0 : network.inverse_mass[s.j]);
+}
+
+}  // namespace
+
 Network dashpots(const Network& network, const DampingSpec& damping) {
   Network c = network;
-  for (Spring& s : c.springs) {
-    const double inverse = network.inverse_mass[s.i] + (s.j == no_index ? 0.0 : network.inverse_mass[s.j]);
-    const double mass = inverse > 0 ? 1 / inverse : 0.0;
-    s.normal = 2 * damping.normal_ratio * std::sqrt(mass * s.normal);
-    s.tangential = 2 * damping.shear_ratio * std::sqrt(mass * s.tangential);
-  }
+  for (Spring& s : c.springs) s = dashpot(s, inverse_mass(network, s), damping);
   return c;
 }
 
+Spring damped_spring(Spring spring, double inverse_mass, const DampingSpec& damping, double step) {
+  const Spring c = dashpot(spring, inverse_mass, damping);
+  spring.normal = (1 + damping.local) * (spring.normal + 2 * c.normal / step);
+  spring.tangential = (1 + damping.local) * (spring.tangential + 2 * c.tangential / step);
+  return spring;
+}
+
 Network damped_network(const Network& network, const DampingSpec& damping, double step) {
-  Network k = dashpots(network, damping);
-  for (std::size_t n = 0; n < k.springs.size(); ++n) {
-    const Spring& s = network.springs[n];
-    Spring& sum = k.springs[n];
-    sum.normal = (1 + damping.local) * (s.normal + 2 * sum.normal / step);
-    sum.tangential = (1 + damping.local) * (s.tangential + 2 * sum.tangential / step);
-  }
+  Network k = network;
+  for (Spring& s : k.springs) s = damped_spring(s, inverse_mass(network, s), damping, step);
   return k;
 }
 

@@ -15,6 +15,8 @@ Network dashpots(const Network& network, const DampingSpec& damping);
 /// (1 + α)(K + 2C/Δt) as a network: the springs that the mode that flips at every step feels, α from local damping
 /// (which then adds to every force), C from the dashpots. With c the mass damping, that mode is neutral at
 /// Δt² λmax + 2c Δt = 4. `step`: Δt [s], > 0.
+/// `inverse_mass`: 1/m_i + 1/m_j [1/kg].
+Spring damped_spring(Spring spring, double inverse_mass, const DampingSpec& damping, double step);
 Network damped_network(const Network& network, const DampingSpec& damping, double step);
 
 }  // namespace eg

@@ -49,7 +49,12 @@ TangentBlock tangent(const ContactPoint& p, const State& state,
 
 }  // namespace
 
-Network linearise(const Scene& scene, const State& state, const OverlapGrowth& growth) {
+Spring spring_of(const ContactPoint& p) {
+  const Geometry<double>& g = p.geometry;
+  return {p.i, p.j, g.arm_i, g.arm_j, p.normal.stiffness, p.normal.tangential, g.n, norm(p.branch)};
+}
+
+Network bare_network(const Scene& scene, const State& state) {
   const auto& g = state.grains;
   Network net;
   net.dimension = scene.dimension;
@@ -61,13 +66,12 @@ Network linearise(const Scene& scene, const State& state, const OverlapGrowth& g
     if (net.rotation) net.inverse_inertia.push_back(g.spin[i].w);
   }
   net.id = g.id;
-  visit_contacts(
-      scene, state,
-      [&](const ContactPoint& p) {
-        net.springs.push_back({p.i, p.j, p.geometry.arm_i, p.geometry.arm_j, p.normal.stiffness, p.normal.tangential,
-                               p.geometry.n, norm(p.branch)});
-      },
-      growth);
+  return net;
+}
+
+Network linearise(const Scene& scene, const State& state) {
+  Network net = bare_network(scene, state);
+  visit_contacts(scene, state, [&](const ContactPoint& p) { net.springs.push_back(spring_of(p)); });
   return net;
 }
 

@@ -8,9 +8,15 @@
 
 namespace eg {
 
-/// Elastic mode: every touching contact sticks; kn, kt of the present overlap (with `growth`: of the larger overlap,
-/// and pairs that would touch count too). Throws nothing; a state without contacts gives no springs.
-Network linearise(const Scene& scene, const State& state, const OverlapGrowth& growth = {});
+/// Elastic mode: every touching contact sticks; kn, kt of the present overlap. Throws nothing; a state without contacts
+/// gives no springs.
+Network linearise(const Scene& scene, const State& state);
+
+/// The grains without their contacts.
+Network bare_network(const Scene& scene, const State& state);
+
+/// The spring of one contact, with the stiffness that it was visited with.
+Spring spring_of(const ContactPoint& contact);
 
 /// Exact derivative of one contact's forces, K_c = −∂(F_i, M_i, F_j, M_j)/∂(u_i, θ_i, u_j, θ_j): 12×12, row major.
 /// Sliding, geometric terms and history updates included; j == no_index for a wall (its rows and columns are zero).

@@ -91,6 +91,7 @@ bool run_stages(const Scene& scene, State& state, StepPolicy& policy, const RunO
   if (state.step == 0 && state.stage == 0) begin_stage(scene, state);
   Engine engine(scene, state, scalar);
   apply_stage(scene, state, engine);
+  policy.begin(state);
   std::optional<CellControl> control(std::in_place, scene.stages[state.stage], state, scene.materials.front().density);
   if (state.step == 0) {  // half a kick, velocities move on to dt/2; the step is chosen knowing how the cell sets out
     control->set_rate(state, policy.next_step(state));

@@ -10,6 +10,8 @@ namespace eg {
 class StepPolicy {
  public:
   virtual ~StepPolicy() = default;
+  /// A run begins, or goes on with this state.
+  virtual void begin(const State& /*state*/) {}
   /// Length of the next step [s], asked after the forces of every step. May keep its plan in state.policy.
   virtual double next_step(State& state) = 0;
 };

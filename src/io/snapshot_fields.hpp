@@ -114,11 +114,24 @@ void visit_ledger(Archive& a, L& ledger) {
 
 template <class Archive, class P>
 void visit_plan(Archive& a, P& plan) {
-  auto& [due, dt, safe, horizon] = plan;
-  a.value("policy/due", "-", due);
+  auto& [dt, safe, unsafe, cause, made, due, check, lifetime, room, refreshes, bound] = plan;
   a.value("policy/dt", "s", dt);
   a.value("policy/safe", "s", safe);
-  a.value("policy/horizon", "-", horizon);
+  a.value("policy/unsafe", "s", unsafe);
+  a.value("policy/cause", "-", cause);
+  a.value("policy/made", "-", made);
+  a.value("policy/due", "-", due);
+  a.value("policy/check", "-", check);
+  a.value("policy/lifetime", "-", lifetime);
+  a.value("policy/room", "-", room);
+  a.value("policy/refreshes", "-", refreshes);
+  auto& [value, step, overlap, weight, wall_overlap, grain] = bound;
+  a.value("policy/bound", "1/s^2", value);
+  a.value("policy/bound_step", "s", step);
+  a.array("policy/allowed_overlap", "m", overlap);
+  a.array("policy/weight", "-", weight);
+  a.array("policy/wall_allowed_overlap", "m", wall_overlap);
+  a.array("policy/grain_bound", "1/s^2", grain);
 }
 
 /// Archive has value(name, unit, number or array of numbers), array(name, unit, vector), column(name, unit, vector of

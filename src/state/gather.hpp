@@ -1,6 +1,8 @@
 #pragma once
 // The contacts of a state as the laws see them, for everything that looks at a packing without moving it.
+#include <cmath>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "contact/interaction.hpp"
@@ -15,6 +17,7 @@ struct ContactPoint {
   std::size_t entry = 0;  ///< place in State::contacts or State::wall_contacts
   Vec3 branch;            ///< x_j − x_i [m]; wall: from the centre to the contact plane
   Geometry<double> geometry;
+  double reach = 0;               ///< overlap that `normal` and all below belong to [m]: the present one or a foreseen
   NormalResponse<double> normal;  ///< N, kn, kt
   Vec3 shear;                     ///< T [N], acts on i as +T; force on j is N n − T
   double limit = 0;               ///< µN [N]
@@ -24,13 +27,27 @@ struct ContactPoint {
   bool sliding() const { return norm(shear) >= limit * (1 - 1e-9); }
 };
 
-/// How far pairs are looked at beyond what touches now: every overlap is taken larger by this.
-using OverlapGrowth = std::function<double(Index i, Index j, const Geometry<double>&)>;
+/// What may press a pair further than it is now.
+struct OverlapForecast {
+  double growth = 0;         ///< of the overlap at most [m]
+  double energy = INFINITY;  ///< the overlap grows no further than until the contact stores this more than twice its own [J]
+};
+/// Asked of every listed contact; of the point it is shown, all up to `geometry` is set.
+using OverlapGrowth = std::function<OverlapForecast(const ContactPoint&)>;
 
-/// Calls visit for every contact that touches (with `growth`: whose overlap plus growth is positive; N, kn and kt are
-/// then those of the larger overlap). Order: grain contacts as listed, then walls.
+/// Calls visit for every contact that touches (with `growth`: that may come to touch; N, kn and kt are then those of the
+/// overlap foreseen). Order: grain contacts as listed, then walls.
 void visit_contacts(const Scene& scene, const State& state, const std::function<void(const ContactPoint&)>& visit,
                     const OverlapGrowth& growth = {});
+
+/// Places in State::contacts and State::wall_contacts, ascending.
+struct ContactSelection {
+  std::span<const std::size_t> grains, walls;
+};
+
+/// The same for some contacts only.
+void visit_contacts(const Scene& scene, const State& state, const ContactSelection& selection,
+                    const std::function<void(const ContactPoint&)>& visit, const OverlapGrowth& growth = {});
 
 Arms arms_of(const Scene& scene);
 

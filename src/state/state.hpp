@@ -75,12 +75,30 @@ struct EnergyLedger {
   double body = 0;      ///< work done by gravity
 };
 
+/// A bound of λmax of the damped network that stands while contacts keep within what they are allowed (timestep/standing_bound.hpp).
+/// `overlap` and `weight` have one value an entry of State::contacts, `wall_overlap` one an entry of wall_contacts.
+struct StandingBound {
+  double value = 0;             ///< λmax ≤ value [1/s²]; 0: there is none
+  double step = 0;              ///< at which dashpots are counted [s]
+  std::vector<double> overlap;  ///< up to which a pair is counted [m]; 0: not at all, infinite for padding
+  std::vector<double> weight;   ///< t of the pair, 0 where it was not counted
+  std::vector<double> wall_overlap;
+  std::vector<double> grain;  ///< bound of λmax(S_i) of every grain with all pairs at what they are allowed [1/s²]
+};
+
 /// What the step policy has planned; part of the state so that a resumed run goes on alike.
 struct StepPlan {
-  std::uint64_t due = 0;      ///< step of the next evaluation; 0: at once
-  double dt = 0;              ///< step in force [s]
-  double safe = 0;            ///< certified limit of the step [s]
-  std::uint64_t horizon = 0;  ///< steps an evaluation looks ahead
+  double dt = 0;                ///< step in force [s]; 0: none chosen yet
+  double safe = 0;              ///< certified limit of the step [s]
+  double unsafe = 0;            ///< the limit of the packing as it was at the last evaluation was not above this [s]
+  int cause = 0;                ///< of the last evaluation, as the policy numbers them
+  std::uint64_t made = 0;       ///< step of the last evaluation
+  std::uint64_t due = 0;        ///< step of the next evaluation at the latest
+  std::uint64_t check = 0;      ///< step of the next check that the bound still stands
+  std::uint64_t lifetime = 0;   ///< steps between evaluations when nothing happens
+  double room = 0;              ///< how much larger than need be the bound was chosen [-]
+  std::uint64_t refreshes = 0;  ///< of the lists that the bound is for
+  StandingBound bound;
 };
 
 /// Where a stage with a cycle stands.

@@ -85,7 +85,7 @@ TEST(Controller, StaysBelowTheExactLimitAndNearIt) {
   }
   EXPECT_GE(shares["stiff"].sum, 0.85 * scene.timestep.safety * shares["stiff"].count);
   EXPECT_GE(shares["shear"].sum, 0.85 * scene.timestep.safety * shares["shear"].count);
-  std::printf("%llu evaluations in %llu steps\n", static_cast<unsigned long long>(controller.log().evaluations),
+  std::printf("%llu evaluations in %llu steps\n", static_cast<unsigned long long>(controller.log().all_evaluations()),
               static_cast<unsigned long long>(state.step));
 }
 

@@ -1,0 +1,83 @@
+#include "timestep/outgrown.hpp"
+
+#include <algorithm>
+
+#include "contact/interaction.hpp"
+#include "contact/lanes.hpp"
+
+namespace eg {
+namespace {
+
+double fastest_wall(const State& state) {
+  double speed = 0;
+  for (const auto& w : state.walls) speed = std::max(speed, norm(w.velocity));
+  return speed;
+}
+
+using Shifts = std::array<Quad, Cell::images>;
+
+void add_outgrown(const State& state, const Shifts& shift, const Mat<Batch>& rate, std::span<const double> allowed,
+                  double time, std::size_t c, std::vector<std::size_t>& found) {
+  const auto& list = state.contacts;
+  const Index *i = list.i.data() + c, *j = list.j.data() + c;
+  const bool images = !list.image.empty();
+  const auto x = load_difference<Batch>(state.grains.position.data(), i, j, images ? shift.data() : nullptr,
+                                        images ? list.image.data() + c : nullptr);
+  const Vec<Batch> branch = xyz(x);
+  const Batch d2 = max(dot(branch, branch), Batch(1e-300)), inverse = rsqrt(d2);
+  const Vec<Batch> velocity = xyz(load_difference<Batch>(state.grains.velocity.data(), i, j)) + rate * branch;
+  const Batch speed = max(-dot(velocity, branch) * inverse, Batch(0.0));
+  const Batch overlap = x.w - d2 * inverse + speed * Batch(closing_margin * time);
+  const Mask over = overlap > max(load_lanes(allowed.data() + c), Batch(0.0));
+  if (!any(over)) return;
+  for (std::size_t k = 0; k < Batch::lanes; ++k)
+    if (lane(over, k)) found.push_back(c + k);
+}
+
+}  // namespace
+
+OverlapForecast forecast(const State& state, Index i, Index j, const Geometry<double>& g, double time) {
+  const auto& velocity = state.grains.velocity;  // w: inverse mass
+  double speed = 0, inverse_mass = velocity[i].w;
+  if (j == no_index) {
+    speed = std::max(0.0, dot(velocity[i].vec(), g.n)) + fastest_wall(state);
+  } else {
+    const double distance = state.grains.radius(i) + state.grains.radius(j) - g.overlap;
+    const Vec3 relative = velocity[j].vec() - velocity[i].vec() + state.cell.rate * (g.n * distance);
+    speed = std::max(0.0, -dot(relative, g.n));
+    inverse_mass += velocity[j].w;
+  }
+  speed *= closing_margin;
+  return {speed * time, speed > 0 ? speed * speed / inverse_mass : 0.0};
+}
+
+std::vector<std::size_t> outgrown_pairs(const State& state, std::span<const double> allowed, double time) {
+  const auto& list = state.contacts;
+  if (list.size() == 0) return {};
+  Shifts shift;
+  for (std::size_t c = 0; c < Cell::images; ++c) shift[c].set(state.cell.shift(static_cast<std::uint8_t>(c)));
+  Mat<Batch> rate;
+  for (std::size_t k = 0; k < 9; ++k) rate.a[k] = Batch(state.cell.rate.a[k]);
+  const std::size_t chunks = list.chunk_begin.size() - 1;
+  std::vector<std::vector<std::size_t>> found(chunks);
+#pragma omp parallel for schedule(static) if (chunks >= Contacts::worth_threads)
+  for (std::size_t k = 0; k < chunks; ++k)
+    for (std::size_t c = list.chunk_begin[k]; c < list.chunk_begin[k + 1]; c += Contacts::lanes)
+      add_outgrown(state, shift, rate, allowed, time, c, found[k]);
+  for (std::size_t k = 1; k < chunks; ++k) found[0].insert(found[0].end(), found[k].begin(), found[k].end());
+  return std::move(found[0]);
+}
+
+std::vector<std::size_t> outgrown_walls(const State& state, std::span<const double> allowed, double time) {
+  std::vector<std::size_t> found;
+  for (std::size_t c = 0; c < state.wall_contacts.size(); ++c) {
+    const auto& contact = state.wall_contacts[c];
+    const Wall& wall = state.walls[contact.wall];
+    const Quad& p = state.grains.position[contact.grain];
+    const auto g = grain_plane(dot(p.vec() - wall.point, wall.normal), wall.normal, p.w, Arms::surface);
+    if (g.overlap + forecast(state, contact.grain, no_index, g, time).growth > allowed[c]) found.push_back(c);
+  }
+  return found;
+}
+
+}  // namespace eg

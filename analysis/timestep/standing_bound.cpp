@@ -1,0 +1,302 @@
+#include "timestep/standing_bound.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "assembly/linearise.hpp"
+#include "state/damping.hpp"
+#include "timestep/outgrown.hpp"
+#include "timestep/scalar_weights.hpp"
+#include "timestep/splitting.hpp"
+
+namespace eg {
+namespace {
+
+constexpr double widest = 100;           // weight
+constexpr double nearest = 0.02;         // room of a grain below the bound, as the weights see it [of the bound]
+constexpr double rounding = 1 + 1e-11;   // of sums of a few dozen positive numbers
+
+/// The weight that leaves both grains of a pair the most room: minimises −ln(σ − S_i) − ln(σ − S_j) in the share of the
+/// pair. `a`: what the pair adds to each S at weight 1; `room`: σ − S of each.
+double centred_weight(double a_i, double room_i, double a_j, double room_j) {
+  const double t = std::sqrt((a_j * room_i) / (a_i * room_j));
+  return std::isfinite(t) ? std::clamp(t, 1 / widest, widest) : 1.0;
+}
+
+/// The largest that a spring can add to λmax(S_i) of a grain at weight 1 (arm ≤ R) [1/s²].
+double most_added(double kn, double kt, double inverse_mass, double inverse_inertia, double radius) {
+  return std::max(kn * inverse_mass, kt * (inverse_mass + inverse_inertia * radius * radius));
+}
+
+/// Overlaps somewhat larger than now, and pressed further by the motion of the time to come.
+OverlapGrowth foreseen(const State& state, double time, double slack) {
+  return [&state, time, slack](const ContactPoint& p) {
+    OverlapForecast f = forecast(state, p.i, p.j, p.geometry, time);
+    f.growth += slack * std::max(0.0, p.geometry.overlap);
+    return f;
+  };
+}
+
+bool moves(const Grains& g, Index i) { return g.velocity[i].w > 0 || (g.rotates() && g.spin[i].w > 0); }
+
+double most_added(const Network& net, const Spring& s, Index grain) {
+  return most_added(s.normal, s.tangential, net.inverse_mass[grain], net.rotation ? net.inverse_inertia[grain] : 0.0,
+                    net.radius[grain]);
+}
+
+/// Moves weights half way (in logarithm) towards centred ones.
+std::vector<double> centre(const Sides& sides, const BlockRanges& ranges, double sigma, const std::vector<double>& t) {
+  const Network& net = sides.network();
+  const auto room = [&](Index g) { return std::max(nearest * sigma, sigma - ranges.high[g]); };
+  std::vector<double> next = t;
+  for (std::size_t c = 0; c < t.size(); ++c) {
+    if (!sides.is_split(c)) continue;
+    const Spring& s = net.springs[c];
+    next[c] = std::sqrt(t[c] * centred_weight(most_added(net, s, s.i), room(s.i), most_added(net, s, s.j), room(s.j)));
+  }
+  return next;
+}
+
+/// t of a pair: the one it was given, else the one that the room of its grains suggests.
+double weight_of(const State& state, std::size_t entry, Index i, Index j) {
+  const StandingBound& bound = state.policy.bound;
+  if (entry < bound.weight.size() && bound.weight[entry] > 0) return bound.weight[entry];
+  const auto& velocity = state.grains.velocity;  // w: inverse mass
+  const auto room = [&](Index g) { return std::max(nearest * bound.value, bound.value - bound.grain[g]); };
+  return centred_weight(velocity[i].w, room(i), velocity[j].w, room(j));
+}
+
+/// S_i of one grain.
+Block block_of(const Sides& sides, const std::vector<double>& t, Index grain) {
+  return sides.block(grain, [&](const Side& side) -> Eigen::Matrix3d {
+    const Spring& s = sides.network().springs[side.spring];
+    double w = 1;
+    if (side.role != Side::Role::alone)
+      w += side.role == Side::Role::first ? t[side.spring] : 1 / t[side.spring];
+    const Eigen::Vector3d n(s.n.x, s.n.y, s.n.z);
+    return w * (s.tangential * Eigen::Matrix3d::Identity() + (s.normal - s.tangential) * n * n.transpose());
+  });
+}
+
+}  // namespace
+
+Spring StandingBounds::counted(const State& state, const ContactPoint& p) const {
+  const auto& velocity = state.grains.velocity;  // w: inverse mass
+  const double inverse_mass = velocity[p.i].w + (p.j == no_index ? 0.0 : velocity[p.j].w);
+  return damped_spring(spring_of(p), inverse_mass, damping_, state.policy.bound.step);
+}
+
+void StandingBounds::remember(const State& state) {
+  const auto& list = state.contacts;
+  i_ = list.i, j_ = list.j, image_ = list.image, id_ = state.grains.id;
+  walls_.clear();
+  for (const auto& w : state.wall_contacts) walls_.push_back({w.wall, w.grain});
+}
+
+double StandingBounds::renew(State& state, const RenewOptions& options) {
+  StandingBound& bound = state.policy.bound;
+  const auto& list = state.contacts;
+  bound.step = options.step;
+  damping_ = damping_in_force(scene_, state);
+  const bool warm = bound.value > 0;
+  Network network = bare_network(scene_, state);
+  std::vector<double> start;
+  std::vector<std::size_t> entry;  // of each spring between grains
+  bound.overlap.assign(list.size(), 0.0);
+  for (std::size_t c = 0; c < list.size(); ++c)
+    if (list.is_padding(c)) bound.overlap[c] = INFINITY;
+  bound.wall_overlap.assign(state.wall_contacts.size(), 0.0);
+  visit_contacts(
+      scene_, state,
+      [&](const ContactPoint& p) {
+        network.springs.push_back(counted(state, p));
+        (p.j == no_index ? bound.wall_overlap : bound.overlap)[p.entry] = p.reach;
+        if (p.j != no_index) entry.push_back(p.entry);
+        if (warm) start.push_back(p.j == no_index ? 1.0 : weight_of(state, p.entry, p.i, p.j));
+      },
+      foreseen(state, options.time, options.slack));
+  bound.weight.assign(list.size(), 0.0);
+
+  const Sides sides(network);
+  ScalarWeights scalars = sweep_scalars(sides, {.most = warm ? 2 : 8, .start = start});
+  double needed = *std::max_element(scalars.ranges.low.begin(), scalars.ranges.low.end());
+  bound.value = std::max(options.floor, needed * (1 + options.room));
+  std::vector<Index> all(sides.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  for (int sweep = 0; sweep < 3; ++sweep) {
+    std::vector<double> t = centre(sides, scalars.ranges, bound.value, scalars.t);
+    BlockRanges ranges(sides.size());
+    block_ranges(sides, t, all, ranges);
+    if (*std::max_element(ranges.high.begin(), ranges.high.end()) > bound.value) break;
+    scalars.t = std::move(t), scalars.ranges = std::move(ranges);
+  }
+  SplittingWeights weights{scalars.t, {}, {}};
+  needed = splitting_bound(sides, {.matrix_sweeps = 0}, &weights).value;
+  bound.value = std::max(bound.value, needed * (1 + 0.2 * options.room));
+  for (std::size_t k = 0; k < entry.size(); ++k) bound.weight[entry[k]] = scalars.t[k];
+  bound.grain = std::move(scalars.ranges.high);
+  for (double& b : bound.grain) b = std::min(b, needed);
+  remember(state);
+
+  std::vector<Index> stiffest;
+  for (Index g = 0; g < bound.grain.size(); ++g)
+    if (scalars.ranges.low[g] > 0.9 * needed) stiffest.push_back(g);
+  stiffest.resize(std::min<std::size_t>(stiffest.size(), 64));
+  return largest_self_block(Sides(part(state, stiffest, {}).network)) * (1 - 1e-12);
+}
+
+bool StandingBounds::follow(State& state) {
+  StandingBound& bound = state.policy.bound;
+  const auto& list = state.contacts;
+  if (id_ != state.grains.id || bound.overlap.size() != i_.size()) return false;
+  std::vector<double> overlap(list.size(), 0.0), weight(list.size(), 0.0);
+  std::size_t o = 0;
+  const auto pair = [](Index i, Index j) { return static_cast<std::uint64_t>(i) << 32 | j; };
+  for (std::size_t c = 0; c < list.size(); ++c) {
+    if (list.is_padding(c)) {
+      overlap[c] = INFINITY;
+      continue;
+    }
+    const std::uint64_t key = pair(list.i[c], list.j[c]);
+    while (o < i_.size() && (pair(i_[o], j_[o]) < key || std::isinf(bound.overlap[o]))) ++o;
+    for (std::size_t k = o; k < i_.size() && pair(i_[k], j_[k]) == key; ++k)
+      if (image_.empty() || image_[k] == list.image[c]) overlap[c] = bound.overlap[k], weight[c] = bound.weight[k];
+  }
+  std::vector<double> walls(state.wall_contacts.size(), 0.0);
+  o = 0;
+  for (std::size_t c = 0; c < walls.size(); ++c) {
+    const std::array<Index, 2> key{state.wall_contacts[c].wall, state.wall_contacts[c].grain};
+    while (o < walls_.size() && walls_[o] < key) ++o;
+    if (o < walls_.size() && walls_[o] == key) walls[c] = bound.wall_overlap[o];
+  }
+  bound.overlap = std::move(overlap), bound.weight = std::move(weight), bound.wall_overlap = std::move(walls);
+  remember(state);
+  return true;
+}
+
+void StandingBounds::add_excess(State& state, const ContactPoint& at, const Spring& before) {
+  const auto& g = state.grains;
+  const Spring now = counted(state, at);
+  const double kn = std::max(0.0, now.normal - before.normal), kt = std::max(0.0, now.tangential - before.tangential);
+  const auto add = [&](Index i, double w) {
+    double& bound = state.policy.bound.grain[i];
+    bound += w * most_added(kn, kt, g.velocity[i].w, g.rotates() ? g.spin[i].w : 0.0, g.radius(i)) * rounding;
+    if (bound > state.policy.bound.value && place_[i] == no_index) place_[i] = 0, doubtful_.push_back(i);
+  };
+  const bool wall = at.j == no_index;
+  const bool split = !wall && moves(g, at.i) && moves(g, at.j);
+  const double t = split ? weight_of(state, at.entry, at.i, at.j) : 0.0;
+  add(at.i, 1 + t);
+  if (!wall) add(at.j, split ? 1 + 1 / t : 1.0), state.policy.bound.weight[at.entry] = t;
+}
+
+StandingCheck StandingBounds::check(State& state, double time, double slack) {
+  damping_ = damping_in_force(scene_, state);
+  StandingBound& bound = state.policy.bound;
+  const auto allowed = [&](const ContactPoint& p) -> double& {
+    return (p.j == no_index ? bound.wall_overlap : bound.overlap)[p.entry];
+  };
+  const auto pairs = outgrown_pairs(state, bound.overlap, time), walls = outgrown_walls(state, bound.wall_overlap, time);
+  std::vector<ContactPoint> outgrown;  // at what they can reach
+  visit_contacts(
+      scene_, state, {pairs, walls},
+      [&](const ContactPoint& p) {
+        if (p.reach > allowed(p)) outgrown.push_back(p);
+      },
+      foreseen(state, time, 5 * slack));
+  StandingCheck result;
+  result.outgrown = outgrown.size();
+  if (outgrown.empty()) return result;
+
+  std::vector<std::size_t> entries, wall_entries;
+  for (const auto& p : outgrown) (p.j == no_index ? wall_entries : entries).push_back(p.entry);
+  place_.resize(state.grains.size(), no_index);
+  std::vector<Spring> before(outgrown.size());  // at what they were allowed
+  std::size_t k = 0;
+  visit_contacts(
+      scene_, state, {entries, wall_entries}, [&](const ContactPoint& p) { before[k - 1] = counted(state, p); },
+      [&](const ContactPoint& p) { return ++k, OverlapForecast{allowed(p) - p.geometry.overlap}; });
+  for (k = 0; k < outgrown.size(); ++k) add_excess(state, outgrown[k], before[k]);
+  for (const auto& p : outgrown) allowed(p) = p.reach;
+
+  const std::vector<Index> doubtful = std::move(doubtful_);
+  doubtful_.clear();
+  for (const Index i : doubtful) place_[i] = no_index;
+  result.examined = doubtful.size();
+  result.stands = doubtful.empty() || examine(state, doubtful, time, slack) || examine(state, doubtful, time, 0);
+  return result;
+}
+
+StandingBounds::Part StandingBounds::part(const State& state, const std::vector<Index>& grains,
+                                          const OverlapGrowth& growth) {
+  const auto& g = state.grains;
+  const auto& list = state.contacts;
+  place_.resize(g.size(), no_index);
+  Part out;
+  Network& net = out.network;
+  net.dimension = scene_.dimension, net.rotation = g.rotates();
+  const auto place = [&](Index i) {
+    if (place_[i] == no_index) {
+      place_[i] = static_cast<Index>(net.size());
+      net.inverse_mass.push_back(g.velocity[i].w), net.radius.push_back(g.radius(i)), net.id.push_back(i);
+      if (net.rotation) net.inverse_inertia.push_back(g.spin[i].w);
+    }
+    return place_[i];
+  };
+  for (const Index i : grains) place(i);
+  for (std::size_t c = 0; c < list.size(); ++c)
+    if ((place_[list.i[c]] < grains.size() || place_[list.j[c]] < grains.size()) && !list.is_padding(c))
+      out.pairs.push_back(c);
+  for (std::size_t c = 0; c < state.wall_contacts.size(); ++c)
+    if (place_[state.wall_contacts[c].grain] < grains.size()) out.walls.push_back(c);
+  out.pair_reach.assign(out.pairs.size(), 0.0), out.wall_reach.assign(out.walls.size(), 0.0);
+  auto next_pair = out.pairs.begin(), next_wall = out.walls.begin();
+  visit_contacts(
+      scene_, state, {out.pairs, out.walls},
+      [&](const ContactPoint& p) {
+        if (p.j == no_index) {
+          next_wall = std::find(next_wall, out.walls.end(), p.entry);
+          out.wall_reach[static_cast<std::size_t>(next_wall - out.walls.begin())] = p.reach;
+        } else {
+          next_pair = std::find(next_pair, out.pairs.end(), p.entry);
+          out.pair_reach[static_cast<std::size_t>(next_pair - out.pairs.begin())] = p.reach;
+        }
+        Spring s = counted(state, p);
+        s.i = place(s.i);
+        if (s.j != no_index) s.j = place(s.j);
+        net.springs.push_back(s);
+        out.entry.push_back(p.j == no_index ? no_entry : p.entry);
+      },
+      growth);
+  for (const Index i : net.id) place_[i] = no_index;
+  return out;
+}
+
+bool StandingBounds::examine(State& state, const std::vector<Index>& grains, double time, double slack) {
+  StandingBound& bound = state.policy.bound;
+  const Part stiff = part(state, grains, foreseen(state, time, slack));
+  const Network& net = stiff.network;
+  std::vector<double> t(net.springs.size(), 1.0);
+  for (std::size_t k = 0; k < t.size(); ++k)
+    if (const Spring& s = net.springs[k]; s.j != no_index)
+      t[k] = weight_of(state, stiff.entry[k], net.id[s.i], net.id[s.j]);
+  const Sides sides(net);
+  BlockRanges ranges(net.size());
+  std::vector<Index> first(grains.size());
+  std::iota(first.begin(), first.end(), Index{0});
+  block_ranges(sides, t, first, ranges);
+  for (const Index k : first) {
+    if (!(ranges.high[k] < bound.value) && !block_is_below(block_of(sides, t, k), sides.of(k).size(), bound.value))
+      return false;
+    bound.grain[grains[k]] = std::min(ranges.high[k], bound.value);
+  }
+  // what these pairs are allowed is now what they were counted at, never more than before
+  for (std::size_t k = 0; k < stiff.pairs.size(); ++k)
+    bound.overlap[stiff.pairs[k]] = std::min(bound.overlap[stiff.pairs[k]], stiff.pair_reach[k]);
+  for (std::size_t k = 0; k < stiff.walls.size(); ++k)
+    bound.wall_overlap[stiff.walls[k]] = std::min(bound.wall_overlap[stiff.walls[k]], stiff.wall_reach[k]);
+  return true;
+}
+
+}  // namespace eg

@@ -1,0 +1,68 @@
+#pragma once
+// A bound of λmax that stands while the packing moves on, and the check that it still does.
+//
+// A renewal bounds the S_i of contact splitting with every pair at the overlap that it is allowed, somewhat more than it
+// has. A check looks at all listed pairs at the overlap that they can reach until the next one. Pairs within what they
+// are allowed change nothing. Each of the others adds at most (1 + t^±1) max(Δkn/m, Δkt (1/m + R²/I)) to λmax(S_i) of
+// its grains (Weyl 1912); a grain whose sum does not fit below the bound is worked out afresh. Proof: certificates.md.
+#include "assembly/damping.hpp"
+#include "state/gather.hpp"
+
+namespace eg {
+
+struct RenewOptions {
+  double time = 0;   ///< until the next check [s]
+  double slack = 0;  ///< by which every overlap may grow before it counts as outgrown [-]
+  double room = 0;   ///< by which the bound is to exceed what the packing needs now [-]
+  double floor = 0;  ///< least value of the bound [1/s²]
+  double step = 0;   ///< at which dashpots are counted [s] (damped_network)
+};
+
+struct StandingCheck {
+  bool stands = true;
+  std::size_t outgrown = 0;  ///< contacts beyond what they are allowed
+  std::size_t examined = 0;  ///< grains worked out afresh
+};
+
+/// Keeps state.policy.bound, which is all that it remembers but for scratch and the keys of the lists.
+class StandingBounds {
+ public:
+  explicit StandingBounds(const Scene& scene) : scene_(scene) {}
+
+  /// Takes note of the lists that the bound is for.
+  void remember(const State& state);
+  /// A new bound, warm-started from the old one; returns a lower bound of λmax of the packing as it is [1/s²].
+  double renew(State& state, const RenewOptions& options);
+  /// Carries the bound over to the present lists. False when the grains have been sorted anew: it has no meaning then.
+  bool follow(State& state);
+  /// Whether λmax ≤ bound.value for the `time` to come [s]. Pairs that outgrow what they are allowed are allowed more,
+  /// with the slack [-], as long as their grains stay below the bound.
+  StandingCheck check(State& state, double time, double slack);
+
+ private:
+  struct Part {
+    Network network;                 ///< some grains, numbered afresh, first those asked for; then their neighbours
+    std::vector<std::size_t> entry;  ///< of each spring in State::contacts; no_entry for a wall
+    std::vector<std::size_t> pairs, walls;  ///< all listed contacts of the grains asked for …
+    std::vector<double> pair_reach, wall_reach;  ///< … and the overlap they were counted at [m], 0 when not at all
+  };
+  static constexpr std::size_t no_entry = ~std::size_t{0};
+
+  /// The spring of a contact as the damped network has it.
+  Spring counted(const State& state, const ContactPoint& contact) const;
+  Part part(const State& state, const std::vector<Index>& grains, const OverlapGrowth& growth);
+  /// Adds what a pair beyond its allowance may add to λmax(S_i) of its grains.
+  void add_excess(State& state, const ContactPoint& at, const Spring& before);
+  /// Works out S_i of these grains with their pairs at what they can reach, and allows them that.
+  bool examine(State& state, const std::vector<Index>& grains, double time, double slack);
+
+  const Scene& scene_;
+  DampingSpec damping_;
+  std::vector<Index> i_, j_, id_;
+  std::vector<std::uint8_t> image_;
+  std::vector<std::array<Index, 2>> walls_;  ///< wall and grain
+  std::vector<Index> doubtful_;  ///< grains that may have passed the bound
+  std::vector<Index> place_;     ///< of a grain in a part; no_index between calls
+};
+
+}  // namespace eg
