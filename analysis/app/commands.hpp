@@ -11,6 +11,7 @@ void add_run_command(CLI::App& app, Action& action);
 void add_timestep_command(CLI::App& app, Action& action);
 void add_stiffness_command(CLI::App& app, Action& action);
 void add_waves_command(CLI::App& app, Action& action);
+void add_study_command(CLI::App& app, Action& action);
 void add_measure_command(CLI::App& app, Action& action);
 void add_plot_command(CLI::App& app, Action& action);
 void add_info_command(CLI::App& app, Action& action);

@@ -53,6 +53,7 @@ int main(int argc, char** argv) {
   eg::add_timestep_command(app, action);
   eg::add_stiffness_command(app, action);
   eg::add_waves_command(app, action);
+  eg::add_study_command(app, action);
   eg::add_measure_command(app, action);
   eg::add_plot_command(app, action);
   eg::add_info_command(app, action);

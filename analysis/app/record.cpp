@@ -43,6 +43,7 @@ void add_run_columns(Columns& c) {
   c.push_back({{"time", "s"}, [](const RowSource& r) { return r.state.time; }});
   c.push_back({{"dt", "s"}, [](const RowSource& r) { return r.state.dt; }});
   c.push_back({{"dt_certified", "s"}, [](const RowSource& r) { return r.state.policy.safe; }});
+  c.push_back({{"step_cause", "-"}, [](const RowSource& r) { return static_cast<double>(r.state.policy.cause); }});
 }
 
 void add_stress_columns(Columns& c, int dimension, const std::string& pressure) {
@@ -130,6 +131,16 @@ EnergyTable energies(const Scene& scene, const State& state) {
   t.work = e.boundary + e.body;
   t.residual = t.kinetic + t.normal + e.shear_work + t.damping - t.work;
   return t;
+}
+
+std::vector<HistoryColumn> step_columns() {
+  return {{"time", "s"},           {"dt", "s"},    {"dt_certified", "s"},
+          {"dt_limit_upper", "s"}, {"cause", "-"}, {"cost_share", "-"}};
+}
+
+std::vector<double> step_row(const State& state, double share) {
+  const StepPlan& p = state.policy;
+  return {state.time, p.dt, p.safe, p.unsafe, static_cast<double>(p.cause), share};
 }
 
 std::vector<HistoryColumn> history_columns(const Scene& scene) {

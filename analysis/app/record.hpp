@@ -12,6 +12,11 @@ namespace eg {
 /// Columns of the history of this scene (energies only when its ledger is kept).
 std::vector<HistoryColumn> history_columns(const Scene& scene);
 
+/// Columns of timestep.csv, a row for every evaluation of the step; `share`: of the wall clock so far that choosing and
+/// checking the step took [-].
+std::vector<HistoryColumn> step_columns();
+std::vector<double> step_row(const State& state, double share);
+
 /// The stage that a state is in; after the last stage that one, and one that drives nothing when there is none.
 const StageSpec& current_stage(const Scene& scene, const State& state);
 

@@ -57,9 +57,11 @@ class Recorder {
   Recorder(const Scene& scene, const State& state, fs::path folder, bool resumed)
       : scene_(scene),
         folder_(std::move(folder)),
-        history_(resumed ? History::resume((folder_ / "history.csv").string(), history_columns(scene), state.step)
-                         : History::create((folder_ / "history.csv").string(), history_columns(scene))) {}
+        history_(open("history.csv", history_columns(scene), state, resumed)),
+        changes_(open("timestep.csv", step_columns(), state, resumed)) {}
 
+  /// The step was chosen anew; `share`: of the wall clock so far that choosing and checking took.
+  void step_change(const State& state, double share) { changes_.append(state.step, step_row(state, share)); }
   void row(const State& state) {
     const Homogenised h = homogenise(scene_, state);
     history_.append(state.step, history_row(scene_, state, h));
@@ -93,19 +95,34 @@ class Recorder {
   }
 
  private:
+  History open(const char* name, const std::vector<HistoryColumn>& columns, const State& state, bool resumed) const {
+    const std::string path = (folder_ / name).string();
+    return resumed ? History::resume(path, columns, state.step) : History::create(path, columns);
+  }
+
   const Scene& scene_;
   fs::path folder_;
-  History history_;
+  History history_, changes_;
   std::map<std::string, std::string> seen_;
 };
+
+nlohmann::json certificate_json(const ControllerLog& log) {
+  nlohmann::json causes;
+  for (std::size_t c = 0; c < step_causes; ++c) causes[step_cause_name(static_cast<StepCause>(c))] = log.evaluations[c];
+  return {{"evaluations", causes},
+          {"checks", log.checks},
+          {"contacts_outgrown", log.outgrown},
+          {"grains_examined", log.examined},
+          {"outruns", log.outruns},
+          {"largest_dt_over_certified", log.worst_ratio},
+          {"largest_dt_over_limit_upper", log.worst_true},
+          {"seconds", log.seconds}};
+}
 
 nlohmann::json result_json(const Scene& scene, const State& state, const ControllerLog& log, double seconds,
                            const Recorder& recorder) {
   const Homogenised h = homogenise(scene, state);
   const auto s = stress_components(state);
-  nlohmann::json causes;
-  for (std::size_t c = 0; c < step_causes; ++c)
-    causes[step_cause_name(static_cast<StepCause>(c))] = log.evaluations[c];
   nlohmann::json j{{"title", scene.title},
                    {"version", version()},
                    {"steps", state.step},
@@ -123,7 +140,7 @@ nlohmann::json result_json(const Scene& scene, const State& state, const Control
                    {"dt_s", state.dt},
                    {"dt_certified_s", state.policy.safe},
                    {"certificate_evaluations", log.all_evaluations()},
-                   {"certificate_causes", causes},{"checks",log.checks},{"examined",log.examined},{"outgrown",log.outgrown},
+                   {"certificate", certificate_json(log)},
                    {"certificate_share", seconds > 0 ? log.seconds / seconds : 0.0},
                    {"elapsed_s", seconds},
                    {"warnings", recorder.warnings()}};
@@ -177,6 +194,8 @@ int run_command(const RunFlags& flags) {
   Recorder recorder(scene, state, result_folder(flags, resumed), resumed);
   Controller controller(scene);
   const auto begin = std::chrono::steady_clock::now();
+  const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
+  controller.on_change = [&](const State& s) { recorder.step_change(s, controller.log().seconds / elapsed()); };
   Progress progress(scene.title, 0, "steps");
   RunObserver observer;
   catch_interrupts();
@@ -206,7 +225,7 @@ int run_command(const RunFlags& flags) {
   }
   recorder.snapshot(state, "final");
   write_vtp((recorder.folder() / "final.vtp").string(), state);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double seconds = elapsed();
   const auto result = result_json(scene, state, controller.log(), seconds, recorder);
   write_file((recorder.folder() / "result.json").string(), result.dump(2) + "\n");
   if (flags.json)

@@ -17,11 +17,11 @@
 namespace eg {
 namespace {
 
-constexpr std::uint64_t ahead = 64;           // steps from one check to the next
+constexpr std::uint64_t ahead = 64;                     // steps from one check to the next
 constexpr std::uint64_t youngest = 500, oldest = 4000;  // steps that a bound may live
-constexpr double slack = 0.1;                 // of an overlap: 5 % of the stiffness of a Hertz contact
+constexpr double slack = 0.1;                           // of an overlap: 5 % of the stiffness of a Hertz contact
 constexpr double least_room = 0.05, most_room = 0.25;
-constexpr double gain = 1.04;                           // of the step, from which on a renewal was worth its cost
+constexpr double gain = 1.04;  // of the step, from which on a renewal was worth its cost
 
 /// The safety factor times the named rule.
 double estimated_step(const Scene& scene, const Network& net, const std::string& name) {
@@ -106,6 +106,10 @@ void Controller::evaluate(State& state, StepCause cause) {
   renew(before > 0 ? before : cap);
   if (damping.dashpots() && std::abs(plan.safe - plan.bound.step) > 0.05 * plan.safe) renew(plan.safe);
   plan.unsafe = refuted_damped_step(lower, damping, plan.bound.step);
+  if (before > 0) {
+    log_.worst_true = std::max(log_.worst_true, plan.dt / plan.unsafe);
+    if (plan.unsafe < before) ++log_.outruns;
+  }
   choose(state);
 
   if (cause == StepCause::renewal)

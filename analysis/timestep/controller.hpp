@@ -14,7 +14,7 @@ enum class StepCause : int {
   start,    ///< of the run
   stage,    ///< another stage began
   growth,   ///< contacts outgrew what the bound allows them
-  renewal,  ///< the bound was old, 
+  renewal,  ///< the bound was old,
   rebuild,  ///< the grains were sorted anew
 };
 inline constexpr std::size_t step_causes = 5;
@@ -23,13 +23,13 @@ std::string step_cause_name(StepCause cause);
 /// What the controller has done, for the report of the run.
 struct ControllerLog {
   std::array<std::uint64_t, step_causes> evaluations{};  ///< by cause
-  std::uint64_t checks = 0;    ///< that the bound still stands
+  std::uint64_t checks = 0;                              ///< that the bound still stands
   std::uint64_t outgrown = 0;  ///< contacts that checks found to outgrow what they were allowed
   std::uint64_t examined = 0;  ///< grains worked out afresh in checks
   double seconds = 0;          ///< spent on all of it
   double worst_ratio = 0;      ///< largest step chosen over the certified limit in force [-]
-  double outrun = 0;           ///< largest step over the limit certified afterwards, where contacts outran a forecast [-]
-  std::uint64_t outruns = 0;   ///< how often they did
+  double worst_true = 0;       ///< largest step taken over the limit's upper end found at its last moment [-]
+  std::uint64_t outruns = 0;   ///< times that the certified limit was found above that end: contacts outran a forecast
 
   std::uint64_t all_evaluations() const;
 };

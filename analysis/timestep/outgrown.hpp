@@ -14,8 +14,8 @@ inline constexpr double closing_margin = 1.5;
 /// until that motion is used up twice. j == no_index: a wall, the fastest there is.
 OverlapForecast forecast(const State& state, Index i, Index j, const Geometry<double>& g, double time);
 
-/// Pairs of State::contacts whose overlap, going straight on, passes what is allowed (a value an entry [m], infinite for
-/// padding). Ascending.
+/// Pairs of State::contacts whose overlap, going straight on, passes what is allowed (a value an entry [m], infinite
+/// for padding). Ascending.
 std::vector<std::size_t> outgrown_pairs(const State& state, std::span<const double> allowed, double time);
 /// The same of State::wall_contacts.
 std::vector<std::size_t> outgrown_walls(const State& state, std::span<const double> allowed, double time);

@@ -15,8 +15,8 @@ struct ScalarWeights {
 };
 
 struct ScalarSweepOptions {
-  int most = 30;      ///< sweeps; they end earlier when the bound stands still …
-  double target = 0;  ///< … or has come down to this [1/s²]
+  int most = 30;                       ///< sweeps; they end earlier when the bound stands still …
+  double target = 0;                   ///< … or has come down to this [1/s²]
   std::span<const double> start = {};  ///< weights to begin with, one a spring; empty: 1
 };
 

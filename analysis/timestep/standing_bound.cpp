@@ -13,9 +13,9 @@
 namespace eg {
 namespace {
 
-constexpr double widest = 100;           // weight
-constexpr double nearest = 0.02;         // room of a grain below the bound, as the weights see it [of the bound]
-constexpr double rounding = 1 + 1e-11;   // of sums of a few dozen positive numbers
+constexpr double widest = 100;          // weight
+constexpr double nearest = 0.02;        // room of a grain below the bound, as the weights see it [of the bound]
+constexpr double rounding = 1 + 1e-11;  // of sums of a few dozen positive numbers
 
 /// The weight that leaves both grains of a pair the most room: minimises −ln(σ − S_i) − ln(σ − S_j) in the share of the
 /// pair. `a`: what the pair adds to each S at weight 1; `room`: σ − S of each.
@@ -72,8 +72,7 @@ Block block_of(const Sides& sides, const std::vector<double>& t, Index grain) {
   return sides.block(grain, [&](const Side& side) -> Eigen::Matrix3d {
     const Spring& s = sides.network().springs[side.spring];
     double w = 1;
-    if (side.role != Side::Role::alone)
-      w += side.role == Side::Role::first ? t[side.spring] : 1 / t[side.spring];
+    if (side.role != Side::Role::alone) w += side.role == Side::Role::first ? t[side.spring] : 1 / t[side.spring];
     const Eigen::Vector3d n(s.n.x, s.n.y, s.n.z);
     return w * (s.tangential * Eigen::Matrix3d::Identity() + (s.normal - s.tangential) * n * n.transpose());
   });
@@ -197,7 +196,8 @@ StandingCheck StandingBounds::check(State& state, double time, double slack) {
   const auto allowed = [&](const ContactPoint& p) -> double& {
     return (p.j == no_index ? bound.wall_overlap : bound.overlap)[p.entry];
   };
-  const auto pairs = outgrown_pairs(state, bound.overlap, time), walls = outgrown_walls(state, bound.wall_overlap, time);
+  const auto pairs = outgrown_pairs(state, bound.overlap, time),
+             walls = outgrown_walls(state, bound.wall_overlap, time);
   std::vector<ContactPoint> outgrown;  // at what they can reach
   visit_contacts(
       scene_, state, {pairs, walls},

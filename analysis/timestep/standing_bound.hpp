@@ -1,10 +1,11 @@
 #pragma once
 // A bound of λmax that stands while the packing moves on, and the check that it still does.
 //
-// A renewal bounds the S_i of contact splitting with every pair at the overlap that it is allowed, somewhat more than it
-// has. A check looks at all listed pairs at the overlap that they can reach until the next one. Pairs within what they
-// are allowed change nothing. Each of the others adds at most (1 + t^±1) max(Δkn/m, Δkt (1/m + R²/I)) to λmax(S_i) of
-// its grains (Weyl 1912); a grain whose sum does not fit below the bound is worked out afresh. Proof: certificates.md.
+// A renewal bounds the S_i of contact splitting with every pair at the overlap that it is allowed, somewhat more than
+// it has. A check looks at all listed pairs at the overlap that they can reach until the next one. Pairs within what
+// they are allowed change nothing. Each of the others adds at most (1 + t^±1) max(Δkn/m, Δkt (1/m + R²/I)) to λmax(S_i)
+// of its grains (Weyl 1912); a grain whose sum does not fit below the bound is worked out afresh. Proof:
+// certificates.md.
 #include "assembly/damping.hpp"
 #include "state/gather.hpp"
 
@@ -43,7 +44,7 @@ class StandingBounds {
   struct Part {
     Network network;                 ///< some grains, numbered afresh, first those asked for; then their neighbours
     std::vector<std::size_t> entry;  ///< of each spring in State::contacts; no_entry for a wall
-    std::vector<std::size_t> pairs, walls;  ///< all listed contacts of the grains asked for …
+    std::vector<std::size_t> pairs, walls;       ///< all listed contacts of the grains asked for …
     std::vector<double> pair_reach, wall_reach;  ///< … and the overlap they were counted at [m], 0 when not at all
   };
   static constexpr std::size_t no_entry = ~std::size_t{0};
@@ -61,8 +62,8 @@ class StandingBounds {
   std::vector<Index> i_, j_, id_;
   std::vector<std::uint8_t> image_;
   std::vector<std::array<Index, 2>> walls_;  ///< wall and grain
-  std::vector<Index> doubtful_;  ///< grains that may have passed the bound
-  std::vector<Index> place_;     ///< of a grain in a part; no_index between calls
+  std::vector<Index> doubtful_;              ///< grains that may have passed the bound
+  std::vector<Index> place_;                 ///< of a grain in a part; no_index between calls
 };
 
 }  // namespace eg

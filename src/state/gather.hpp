@@ -29,14 +29,15 @@ struct ContactPoint {
 
 /// What may press a pair further than it is now.
 struct OverlapForecast {
-  double growth = 0;         ///< of the overlap at most [m]
-  double energy = INFINITY;  ///< the overlap grows no further than until the contact stores this more than twice its own [J]
+  double growth = 0;  ///< of the overlap at most [m]
+  double energy =
+      INFINITY;  ///< the overlap grows no further than until the contact stores this more than twice its own [J]
 };
 /// Asked of every listed contact; of the point it is shown, all up to `geometry` is set.
 using OverlapGrowth = std::function<OverlapForecast(const ContactPoint&)>;
 
-/// Calls visit for every contact that touches (with `growth`: that may come to touch; N, kn and kt are then those of the
-/// overlap foreseen). Order: grain contacts as listed, then walls.
+/// Calls visit for every contact that touches (with `growth`: that may come to touch; N, kn and kt are then those of
+/// the overlap foreseen). Order: grain contacts as listed, then walls.
 void visit_contacts(const Scene& scene, const State& state, const std::function<void(const ContactPoint&)>& visit,
                     const OverlapGrowth& growth = {});
 

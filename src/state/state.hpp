@@ -75,8 +75,9 @@ struct EnergyLedger {
   double body = 0;      ///< work done by gravity
 };
 
-/// A bound of λmax of the damped network that stands while contacts keep within what they are allowed (timestep/standing_bound.hpp).
-/// `overlap` and `weight` have one value an entry of State::contacts, `wall_overlap` one an entry of wall_contacts.
+/// A bound of λmax of the damped network that stands while contacts keep within what they are allowed
+/// (timestep/standing_bound.hpp). `overlap` and `weight` have one value an entry of State::contacts, `wall_overlap` one
+/// an entry of wall_contacts.
 struct StandingBound {
   double value = 0;             ///< λmax ≤ value [1/s²]; 0: there is none
   double step = 0;              ///< at which dashpots are counted [s]

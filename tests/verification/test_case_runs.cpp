@@ -106,4 +106,21 @@ TEST(Case, SettlingBox) {
   EXPECT_NEAR(carried / weight, 1, 5e-3);  // floor and side walls
 }
 
+TEST(Case, TimestepStudy) {
+  const json rows =
+      json::parse(output("study --json --set specimen.count=150 " + case_file("timestep_study")), nullptr, false);
+  ASSERT_TRUE(rows.is_array());
+  const auto ratio = [](const json& row, const char* rule) { return row["estimates"][rule]["ratio"].get<double>(); };
+  EXPECT_EQ(rows[0]["packing"], "two spheres");
+  EXPECT_NEAR(ratio(rows[0], "yade"), 0.8 * std::sqrt(3.0), 1e-9);  // 0.8 √2 √(3 m/k) against √2 √(m/k)
+  for (const auto& row : rows) {
+    EXPECT_LE(ratio(row, "element"), 1 + 1e-9);
+    EXPECT_LE(ratio(row, "gershgorin"), 1 + 1e-9);
+    if (row["packing"] != "fcc") continue;  // Δt/T_R = 0.127 (δ/2R)^(−1/4) for ν = 0.12
+    const double overlap = row["largest_overlap"];
+    EXPECT_NEAR(ratio(row, "rayleigh-rmin") * 0.127 * std::pow(overlap, -0.25), 1, 0.01);
+    EXPECT_EQ(row["estimates"]["rayleigh-rmin"]["unstable"].get<bool>(), overlap > 2.6e-4);
+  }
+}
+
 }  // namespace

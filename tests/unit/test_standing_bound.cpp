@@ -1,0 +1,82 @@
+// A standing bound: whenever a check says that it stands, it is not below the exact λmax of what was to come.
+#include <gtest/gtest.h>
+
+#include "assembly/linearise.hpp"
+#include "assembly/stiffness.hpp"
+#include "eigen/dense.hpp"
+#include "search/neighbours.hpp"
+#include "support/scenes.hpp"
+#include "timestep/standing_bound.hpp"
+
+namespace eg {
+namespace {
+
+double exact(const Scene& scene, const State& state) {
+  return dense_largest(dense_scaled_stiffness(linearise(scene, state))).value;
+}
+
+State touching_cluster(const Scene& scene, std::uint64_t seed) {
+  State state = test::cluster(scene, 40, seed, 0.9);
+  rebuild_neighbours(state, 4e-4, 2e-5);
+  return state;
+}
+
+/// Every grain moves at random, by some `size` [m].
+void shake(State& state, double size, Random& random) {
+  for (auto& p : state.grains.position) p.set(p.vec() + Vec3{random.normal(), random.normal(), random.normal()} * size);
+}
+
+TEST(StandingBound, HoldsTheExactValueWheneverItStands) {
+  const Scene scene = test::scene_of("hertz-mindlin");
+  int stood = 0, fell = 0, beyond = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    State state = touching_cluster(scene, seed);
+    if (linearise(scene, state).springs.empty()) continue;
+    StandingBounds bounds(scene);
+    Random random(seed);
+    const double lower = bounds.renew(state, {.time = 0, .slack = 0.1, .room = 0.15, .floor = 0, .step = 1});
+    EXPECT_LE(lower, exact(scene, state) * (1 + 1e-12));
+    EXPECT_GE(state.policy.bound.value, exact(scene, state));
+    for (int k = 0; k < 40; ++k) {
+      shake(state, 2e-7 * (1 + k), random);
+      refresh_contacts(state);
+      ASSERT_TRUE(bounds.follow(state));
+      const double now = exact(scene, state);
+      beyond += now > state.policy.bound.value;
+      if (bounds.check(state, 0, 0.1).stands) {
+        ++stood;
+        EXPECT_LE(now, state.policy.bound.value * (1 + 1e-12)) << "seed " << seed << ", shake " << k;
+      } else {
+        ++fell;
+        bounds.renew(state, {.time = 0, .slack = 0.1, .room = 0.15, .floor = 0, .step = 1});
+      }
+    }
+  }
+  EXPECT_GT(stood, 100);
+  EXPECT_GT(fell, 10);
+  EXPECT_GT(beyond, 5);  // the shaking does pass the bound now and then
+}
+
+TEST(StandingBound, ForeseesCollisions) {
+  const Scene scene = test::scene_of("hertz-mindlin");
+  State state = touching_cluster(scene, 3);
+  for (auto& v : state.grains.velocity) v.set({0, 0, 0});
+  StandingBounds bounds(scene);
+  bounds.renew(state, {.time = 0, .slack = 0.1, .room = 0.05, .floor = 0, .step = 1});
+  EXPECT_TRUE(bounds.check(state, 1e-3, 0.1).stands) << "nothing moves";
+  Random random(1);
+  for (auto& v : state.grains.velocity) v.set(Vec3{random.normal(), random.normal(), random.normal()} * 10);
+  EXPECT_FALSE(bounds.check(state, 1e-3, 0.1).stands) << "everything rushes together";
+}
+
+TEST(StandingBound, EndsWhenGrainsAreSortedAnew) {
+  const Scene scene = test::scene_of("hertz-mindlin");
+  State state = touching_cluster(scene, 3);
+  StandingBounds bounds(scene);
+  bounds.renew(state, {.time = 0, .slack = 0.1, .room = 0.05, .floor = 0, .step = 1});
+  std::swap(state.grains.id[0], state.grains.id[1]);
+  EXPECT_FALSE(bounds.follow(state));
+}
+
+}  // namespace
+}  // namespace eg
