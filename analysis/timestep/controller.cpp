@@ -23,6 +23,9 @@ constexpr double slack = 0.1;                           // of an overlap: 5 % of
 constexpr double least_room = 0.05, most_room = 0.25;
 constexpr double gain = 1.04;  // of the step, from which on a renewal was worth its cost
 
+/// Steps to the next check: a stage that begins may set everything in motion at once.
+std::uint64_t look_ahead(const State& state) { return std::clamp<std::uint64_t>(state.stage_step, 4, ahead); }
+
 /// The safety factor times the named rule.
 double estimated_step(const Scene& scene, const Network& net, const std::string& name) {
   const Material& m = scene.materials.front();
@@ -96,7 +99,7 @@ void Controller::evaluate(State& state, StepCause cause) {
 
   const double cap = free_limit(state), before = plan.safe;
   const double dt = plan.dt > 0 ? plan.dt : scene_.timestep.safety * cap;
-  const double time = static_cast<double>(ahead) * dt;
+  const double time = static_cast<double>(look_ahead(state)) * dt;
   const DampingSpec damping = damping_in_force(scene_, state);
   double lower = 0;
   const auto renew = [&](double step) {
@@ -118,7 +121,8 @@ void Controller::evaluate(State& state, StepCause cause) {
   plan.cause = static_cast<int>(cause);
   plan.made = state.step;
   plan.due = state.step + plan.lifetime;
-  plan.check = state.step + static_cast<std::uint64_t>(std::clamp(time / plan.dt, 1.0, double{ahead}));
+  plan.check =
+      state.step + static_cast<std::uint64_t>(std::clamp(time / plan.dt, 1.0, static_cast<double>(look_ahead(state))));
   plan.refreshes = state.list.refreshes;
   log_.worst_ratio = std::max(log_.worst_ratio, plan.dt / plan.safe);
   ++log_.evaluations[static_cast<std::size_t>(cause)];
@@ -127,10 +131,10 @@ void Controller::evaluate(State& state, StepCause cause) {
 
 bool Controller::still_stands(State& state) {
   auto& plan = state.policy;
-  const auto result = bounds_.check(state, static_cast<double>(ahead) * plan.dt, slack);
+  const auto result = bounds_.check(state, static_cast<double>(look_ahead(state)) * plan.dt, slack);
   ++log_.checks;
   log_.examined += result.examined;
-  plan.check = state.step + ahead;
+  plan.check = state.step + look_ahead(state);
   log_.outgrown += result.outgrown;
   return result.stands;
 }

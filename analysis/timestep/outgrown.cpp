@@ -20,14 +20,14 @@ void add_outgrown(const State& state, const Shifts& shift, const Mat<Batch>& rat
                   double time, std::size_t c, std::vector<std::size_t>& found) {
   const auto& list = state.contacts;
   const Index *i = list.i.data() + c, *j = list.j.data() + c;
-  const bool images = !list.image.empty();
-  const auto x = load_difference<Batch>(state.grains.position.data(), i, j, images ? shift.data() : nullptr,
-                                        images ? list.image.data() + c : nullptr);
-  const Vec<Batch> branch = xyz(x);
+  BothSides<Batch> both;
+  load_sides<false>(both, state.grains.position.data(), state.grains.velocity.data(), nullptr, i, j, shift.data(),
+                    list.image.empty() ? nullptr : list.image.data() + c);
+  const Vec<Batch> branch = xyz(both.branch);
   const Batch d2 = max(dot(branch, branch), Batch(1e-300)), inverse = rsqrt(d2);
-  const Vec<Batch> velocity = xyz(load_difference<Batch>(state.grains.velocity.data(), i, j)) + rate * branch;
+  const Vec<Batch> velocity = xyz(both.velocity) + rate * branch;
   const Batch speed = max(-dot(velocity, branch) * inverse, Batch(0.0));
-  const Batch overlap = x.w - d2 * inverse + speed * Batch(closing_margin * time);
+  const Batch overlap = both.branch.w - d2 * inverse + speed * Batch(closing_margin * time);
   const Mask over = overlap > max(load_lanes(allowed.data() + c), Batch(0.0));
   if (!any(over)) return;
   for (std::size_t k = 0; k < Batch::lanes; ++k)
@@ -38,17 +38,20 @@ void add_outgrown(const State& state, const Shifts& shift, const Mat<Batch>& rat
 
 OverlapForecast forecast(const State& state, Index i, Index j, const Geometry<double>& g, double time) {
   const auto& velocity = state.grains.velocity;  // w: inverse mass
-  double speed = 0, inverse_mass = velocity[i].w;
+  const auto positive = [](double x) { return closing_margin * std::max(0.0, x); };
+  double speed = 0, driven = 0, inverse_mass = velocity[i].w;
   if (j == no_index) {
-    speed = std::max(0.0, dot(velocity[i].vec(), g.n)) + fastest_wall(state);
+    driven = positive(fastest_wall(state));
+    speed = driven + positive(dot(velocity[i].vec(), g.n));
   } else {
     const double distance = state.grains.radius(i) + state.grains.radius(j) - g.overlap;
-    const Vec3 relative = velocity[j].vec() - velocity[i].vec() + state.cell.rate * (g.n * distance);
-    speed = std::max(0.0, -dot(relative, g.n));
+    const double affine = -dot(state.cell.rate * (g.n * distance), g.n);
+    driven = positive(affine);
+    speed = positive(affine - dot(velocity[j].vec() - velocity[i].vec(), g.n));
     inverse_mass += velocity[j].w;
   }
-  speed *= closing_margin;
-  return {speed * time, speed > 0 ? speed * speed / inverse_mass : 0.0};
+  return {speed * time, speed > 0 && inverse_mass > 0 ? speed * speed / inverse_mass : 0.0,
+          std::min(speed, driven) * time};
 }
 
 std::vector<std::size_t> outgrown_pairs(const State& state, std::span<const double> allowed, double time) {

@@ -29,13 +29,15 @@ double most_added(double kn, double kt, double inverse_mass, double inverse_iner
   return std::max(kn * inverse_mass, kt * (inverse_mass + inverse_inertia * radius * radius));
 }
 
-/// Overlaps somewhat larger than now, and pressed further by the motion of the time to come.
+/// Overlaps pressed further by the motion of the time to come, and somewhat larger.
+OverlapForecast foreseen(const State& state, const ContactPoint& p, double time, double slack) {
+  OverlapForecast f = forecast(state, p.i, p.j, p.geometry, time);
+  const double more = slack * std::max(0.0, p.geometry.overlap);
+  f.growth += more, f.driven += more;
+  return f;
+}
 OverlapGrowth foreseen(const State& state, double time, double slack) {
-  return [&state, time, slack](const ContactPoint& p) {
-    OverlapForecast f = forecast(state, p.i, p.j, p.geometry, time);
-    f.growth += slack * std::max(0.0, p.geometry.overlap);
-    return f;
-  };
+  return [&state, time, slack](const ContactPoint& p) { return foreseen(state, p, time, slack); };
 }
 
 bool moves(const Grains& g, Index i) { return g.velocity[i].w > 0 || (g.rotates() && g.spin[i].w > 0); }
@@ -204,7 +206,10 @@ StandingCheck StandingBounds::check(State& state, double time, double slack) {
       [&](const ContactPoint& p) {
         if (p.reach > allowed(p)) outgrown.push_back(p);
       },
-      foreseen(state, time, 5 * slack));
+      [&](const ContactPoint& p) {  // where there is much room, enough for long
+        const double most = std::max(bound.grain[p.i], p.j == no_index ? 0.0 : bound.grain[p.j]);
+        return foreseen(state, p, time, (most < 0.5 * bound.value ? 15 : 5) * slack);
+      });
   StandingCheck result;
   result.outgrown = outgrown.size();
   if (outgrown.empty()) return result;

@@ -71,7 +71,7 @@ class Gatherer {
       const double stored = Law::normal_energy(pair, reach);
       if (stored <= most * (1 + 1e-6)) break;
       const double force = Law::template normal<double>(pair, reach).force;
-      reach = std::max(overlap, reach * std::pow(most / stored, stored / (force * reach)));
+      reach = std::max(overlap + f.driven, reach * std::pow(most / stored, stored / (force * reach)));
     }
     return reach;
   }

@@ -29,9 +29,9 @@ struct ContactPoint {
 
 /// What may press a pair further than it is now.
 struct OverlapForecast {
-  double growth = 0;  ///< of the overlap at most [m]
-  double energy =
-      INFINITY;  ///< the overlap grows no further than until the contact stores this more than twice its own [J]
+  double growth = 0;         ///< of the overlap at most [m] …
+  double energy = INFINITY;  ///< … and no further than until the contact stores this more than twice its own [J] …
+  double driven = 0;         ///< … but in any case so far [m]: what the cell or a wall does, whatever it takes
 };
 /// Asked of every listed contact; of the point it is shown, all up to `geometry` is set.
 using OverlapGrowth = std::function<OverlapForecast(const ContactPoint&)>;

@@ -65,7 +65,7 @@ TEST(StandingBound, ForeseesCollisions) {
   bounds.renew(state, {.time = 0, .slack = 0.1, .room = 0.05, .floor = 0, .step = 1});
   EXPECT_TRUE(bounds.check(state, 1e-3, 0.1).stands) << "nothing moves";
   Random random(1);
-  for (auto& v : state.grains.velocity) v.set(Vec3{random.normal(), random.normal(), random.normal()} * 10);
+  for (auto& v : state.grains.velocity) v.set(Vec3{random.normal(), random.normal(), random.normal()} * 10.0);
   EXPECT_FALSE(bounds.check(state, 1e-3, 0.1).stands) << "everything rushes together";
 }
 
