@@ -100,6 +100,16 @@ void check_list(const Check& check, const NeighbourList& list, std::size_t grain
   check.length("list/reference", list.reference.size(), grains, true);
 }
 
+/// What is allowed must be there for every contact, once a step has been chosen.
+void check_plan(const Check& check, const State& state) {
+  const StandingBound& bound = state.policy.bound;
+  if (!(state.policy.dt > 0)) return;
+  check.length("policy/allowed_overlap", bound.overlap.size(), state.contacts.size());
+  check.length("policy/weight", bound.weight.size(), state.contacts.size());
+  check.length("policy/wall_allowed_overlap", bound.wall_overlap.size(), state.wall_contacts.size());
+  check.length("policy/grain_bound", bound.grain.size(), state.grains.size());
+}
+
 }  // namespace
 
 void check_state(const Scene& scene, const State& state, const std::string& file) {
@@ -112,6 +122,7 @@ void check_state(const Scene& scene, const State& state, const std::string& file
   check_grains(check, state.grains, scene.materials.size());
   check_contacts(check, state.contacts, state.grains.size());
   check_list(check, state.list, state.grains.size());
+  check_plan(check, state);
   check.below("walls/material", state.walls, scene.materials.size(), [](const Wall& w) { return w.material; });
   check.below("wall_contacts/grain", state.wall_contacts, state.grains.size(), [](const auto& c) { return c.grain; });
   check.below("wall_contacts/wall", state.wall_contacts, state.walls.size(), [](const auto& c) { return c.wall; });
