@@ -81,6 +81,10 @@ eg::State scrambled_state() {
   s.list.reference.resize(30);
   s.walls.resize(2);
   s.wall_contacts.resize(3);
+  s.policy.bound.overlap.resize(19);
+  s.policy.bound.weight.resize(19);
+  s.policy.bound.wall_overlap.resize(3);
+  s.policy.bound.grain.resize(30);
   Scramble scramble;
   eg::visit_state(scramble, s);
   s.contacts.chunk_begin = {0, 8, 19};
@@ -153,11 +157,21 @@ TEST(Snapshot, SparseStateComesBack) {
   state.contacts = {};
   state.walls.clear();
   state.wall_contacts.clear();
+  state.policy = {};
   state.ledger.body = -0.0;
   eg::write_snapshot(path, eg::parse_scene(text), state);
   const auto read = eg::read_snapshot(path).state;
   EXPECT_EQ(bytes_of(read), bytes_of(state));
   EXPECT_FALSE(read.grains.rotates());
+}
+
+TEST(Snapshot, APlanOfTheStepThatMissesContactsIsRefused) {
+  const Scratch scratch;
+  const std::string path = scratch / "state.h5";
+  auto state = scrambled_state();
+  state.policy.bound.overlap.pop_back();
+  eg::write_snapshot(path, eg::parse_scene(text), state);
+  EXPECT_THROW(eg::read_snapshot(path), eg::InputError);
 }
 
 TEST(Snapshot, SameStateGivesTheSameFileAndLeavesNoOther) {
