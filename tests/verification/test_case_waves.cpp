@@ -66,7 +66,7 @@ TEST(CaseWaves, DispersionOfTheColumn) {
 }
 
 TEST(CaseWaves, RandomPacking) {
-  const test::CaseRun packing("waves_random", "--set specimen.count=600");
+  const test::CaseRun packing("waves_random", "--set specimen.count=1200");
   ASSERT_TRUE(packing.complete());
   const std::string command = "waves transmit " + packing.file("final.h5") + " --json --frequency 20e3 ";
   const auto layer = json::parse(output(command));
