@@ -28,8 +28,9 @@ double lens_volume(int dimension, double ri, double rj, double distance) {
   const double overlap = ri + rj - distance;
   if (overlap <= 0) return 0;
   if (distance <= std::abs(ri - rj)) return grain_volume(dimension, std::min(ri, rj));
-  // thickness of either cap: δ (2R_other − δ)/(2d)
-  const double hi = overlap * (2 * rj - overlap) / (2 * distance), hj = overlap * (2 * ri - overlap) / (2 * distance);
+  // thickness of either cap: δ (d + R_other − R)/(2d)
+  const double hi = overlap * (distance + (rj - ri)) / (2 * distance);
+  const double hj = overlap * (distance + (ri - rj)) / (2 * distance);
   return cap_volume(dimension, ri, ri - hi) + cap_volume(dimension, rj, rj - hj);
 }
 
