@@ -13,6 +13,12 @@ class BlockJacobi {
   BlockJacobi(std::vector<double> blocks, int width);
 
   std::size_t rows() const;
+  int width() const { return width_; }
+  /// The inverse of block b, symmetric, width² numbers.
+  std::span<const double> inverse(std::size_t b) const {
+    const auto size = static_cast<std::size_t>(width_) * static_cast<std::size_t>(width_);
+    return std::span(inverse_).subspan(b * size, size);
+  }
   /// z = D⁻¹ r
   void apply(std::span<const double> r, std::span<double> z) const;
 

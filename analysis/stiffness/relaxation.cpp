@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "assembly/apply.hpp"
 #include "assembly/stiffness.hpp"
 #include "base/error.hpp"
-#include "eigen/block_jacobi.hpp"
 #include "eigen/conjugate_gradient.hpp"
 #include "eigen/sparse_cholesky.hpp"
+#include "stiffness/cluster_jacobi.hpp"
 
 namespace eg {
 namespace {
@@ -131,7 +132,7 @@ class Solver {
     if (direct_)
       factorise();
     else
-      jacobi_.emplace_back(diagonal_blocks(network), network.dofs_per_grain());
+      jacobi_.emplace(network);
   }
 
   /// `energy`: Σ e·k e of the load.
@@ -174,7 +175,7 @@ class Solver {
   }
 
   double iterate(const Field& load, Field& x, double energy) {
-    const auto done = conjugate_gradient(k_, jacobi_.front(), load, x, {options_.tolerance, energy});
+    const auto done = conjugate_gradient(k_, *jacobi_, load, x, {options_.tolerance, energy});
     result_.iterations += done.iterations;
     result_.converged = result_.converged && done.converged;
     return done.error;
@@ -186,7 +187,7 @@ class Solver {
   RelaxedModuli& result_;
   StiffnessOperator k_;
   bool direct_ = false, grounded_ = false;
-  std::vector<BlockJacobi> jacobi_;  // one, or none
+  std::optional<ClusterJacobi> jacobi_;
   SparseCholesky cholesky_{network_.dofs_per_grain()};
   std::vector<double> errors_;
 };

@@ -3,19 +3,19 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include <Eigen/Eigenvalues>
 #include <numbers>
 
 #include "app/prepare.hpp"
 #include "assembly/linearise.hpp"
-#include "assembly/stiffness.hpp"
 #include "measure/stress.hpp"
 #include "stiffness/backbone.hpp"
 #include "stiffness/effective_medium.hpp"
 #include "stiffness/probe.hpp"
 #include "stiffness/relaxation.hpp"
 #include "stiffness/symmetry_fit.hpp"
+#include "support/dense_moduli.hpp"
 #include "support/packings.hpp"
+#include "support/tiling.hpp"
 
 namespace eg {
 namespace {
@@ -38,40 +38,6 @@ struct Specimen {
     return {scene.dimension, moduli.total()};
   }
 };
-
-/// C = affine − ΞᵀK⁺Ξ/V, all dense.
-Eigen::MatrixXd dense_tensor(const Network& net, double volume) {
-  const auto loads = periodic_strains(net.dimension);
-  const auto components = active_components(net);
-  const auto d = static_cast<Eigen::Index>(components.size()), n = static_cast<Eigen::Index>(total_dofs(net));
-  Eigen::MatrixXd xi = Eigen::MatrixXd::Zero(n, loads.count()), c = Eigen::MatrixXd::Zero(loads.count(), loads.count());
-  for (const Spring& s : net.springs) {
-    Eigen::MatrixXd e(3, loads.count());
-    for (int a = 0; a < loads.count(); ++a) {
-      const Vec3 jump = loads.jump(s, a);
-      e.col(a) << jump.x, jump.y, jump.z;
-    }
-    const Eigen::MatrixXd ke = contact_stiffness(s) * e;
-    c += e.transpose() * ke;
-    for (const auto side : {ContactSide::first, ContactSide::second}) {
-      const Eigen::MatrixXd f = side_matrix(s, side).transpose() * ke;
-      const auto at = static_cast<Eigen::Index>(side == ContactSide::first ? s.i : s.j) * d;
-      for (Eigen::Index k = 0; k < d; ++k) xi.row(at + k) += f.row(components[static_cast<std::size_t>(k)]);
-    }
-  }
-  // Rotations in units of the mean radius, or the spectrum would be split by units.
-  const double radius = net.radius.front();
-  Eigen::VectorXd unit(n);
-  for (Eigen::Index k = 0; k < n; ++k) unit(k) = components[static_cast<std::size_t>(k % d)] < 3 ? 1 : 1 / radius;
-  const Eigen::MatrixXd k = unit.asDiagonal() * Eigen::MatrixXd(stiffness_matrix(net)) * unit.asDiagonal();
-  const Eigen::MatrixXd f = unit.asDiagonal() * xi;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(k);
-  const Eigen::MatrixXd modes = solver.eigenvectors().transpose() * f;
-  for (Eigen::Index m = 0; m < n; ++m)
-    if (const double lambda = solver.eigenvalues()(m); lambda > 1e-11 * solver.eigenvalues()(n - 1))
-      c -= modes.row(m).transpose() * modes.row(m) / lambda;
-  return c / volume;
-}
 
 double relative(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) { return (a - b).norm() / b.norm(); }
 
@@ -103,7 +69,7 @@ TEST(ElasticLattice, ClosedForms) {
 
 TEST(ElasticLattice, HcpRelaxesAsTheDenseSolutionDoes) {
   const Specimen s(test::lattice_scene("linear", "hcp", {3, 2, 2}, 1e-3));
-  const auto exact = dense_tensor(s.network, s.volume());
+  const auto exact = test::dense_tensor(s.network, s.volume());
   for (const auto solver : {Solver::cholesky, Solver::conjugate_gradients})
     EXPECT_LE(relative(s.tensor(solver).voigt, exact), 1e-9);
   const auto loads = periodic_strains(3);
@@ -152,7 +118,7 @@ class RandomPacking : public testing::TestWithParam<std::pair<const char*, int>>
 
 TEST_P(RandomPacking, AgreesWithADenseRelaxation) {
   const Specimen s = make(GetParam().second == 3 ? 100 : 200, 150);
-  const auto exact = dense_tensor(s.network, s.volume());
+  const auto exact = test::dense_tensor(s.network, s.volume());
   for (const auto solver : {Solver::cholesky, Solver::conjugate_gradients}) {
     const auto moduli = relax(s.network, periodic_strains(s.scene.dimension), s.volume(), {solver});
     EXPECT_LE(relative(moduli.total(), exact), 1e-8);
@@ -174,6 +140,15 @@ TEST_P(RandomPacking, RattlersMakeNoDifference) {
   EXPECT_LE(relative(bare.total(), whole.total()), 1e-8);
   s.network.springs.push_back({0, 0, 0, 0, 0, 0, {1, 0, 0}, 0});  // springs of no stiffness do no harm either
   EXPECT_LE(relative(relax(s.network, loads, s.volume()).total(), whole.total()), 1e-8);
+}
+
+// A periodic packing repeated is the same material: 2×2×2 copies have the tensor of one.
+TEST(Relaxation, CopiesSideBySideAreTheSameMaterial) {
+  const Scene scene = test::scene_of("hertz-mindlin");
+  const State one = test::random_packing(scene, "uniform", 200, 3, 0.66, 150);
+  const Specimen small(scene, one), large(scene, test::tiled(scene, one, 2));
+  ASSERT_EQ(large.network.springs.size(), 8 * small.network.springs.size());
+  EXPECT_LE(relative(large.tensor(Solver::conjugate_gradients).voigt, small.tensor(Solver::cholesky).voigt), 1e-9);
 }
 
 TEST(Relaxation, IsTheSameForAnyNumberOfThreads) {
