@@ -5,6 +5,7 @@
 #include "app/measure_figure.hpp"
 #include "app/measure_report.hpp"
 #include "app/packing_input.hpp"
+#include "app/zone_report.hpp"
 #include "base/error.hpp"
 #include "io/vtk.hpp"
 
@@ -16,6 +17,7 @@ struct MeasureFlags {
   std::string figure, plot = "rose", chains;
   std::vector<double> splits;
   std::vector<std::vector<double>> spheres;
+  ZoneFlags zones;
 };
 
 std::vector<MeasureSphere> spheres_of(const MeasureFlags& flags, int dimension) {
@@ -39,10 +41,16 @@ int measure_command(const MeasureFlags& flags) {
   const auto contacts = touching_contacts(packing.scene, packing.state);
   const auto report =
       measure_report(packing, flags.packing.input, contacts, flags.splits, spheres_of(flags, packing.state.dimension));
-  if (flags.packing.json)
-    fmt::print("{}\n", json_of(report).dump(2));
-  else
+  const auto zones = zone_reports(packing.state, flags.zones, flags.packing.input);
+  const int dimension = packing.state.dimension;
+  if (flags.packing.json) {
+    auto json = json_of(report);
+    for (const auto& zone : zones) json["zones"].push_back(json_of(zone, dimension));
+    fmt::print("{}\n", json.dump(2));
+  } else {
     fmt::print("{}", text_of(report));
+    for (const auto& zone : zones) fmt::print("{}", text_of(zone, dimension));
+  }
   if (!flags.figure.empty()) draw_measure(report, flags.plot, flags.figure);
   if (!flags.chains.empty()) {
     write_network_vtp(flags.chains, packing.state, contacts, force_chains(packing.state, contacts));
@@ -65,6 +73,7 @@ void add_measure_command(CLI::App& app, Action& action) {
   sub->add_option("--split", flags->splits, "diameters between size fractions, D1,D2,... [m]")->delimiter(',');
   sub->add_option("--sphere", flags->spheres, "measure inside a sphere X,Y,Z,RADIUS (2D: X,Y,RADIUS) [m]; repeatable")
       ->delimiter(',');
+  add_zone_options(*sub, flags->zones);
   sub->callback([flags, &action] { action = [flags] { return measure_command(*flags); }; });
 }
 

@@ -1,16 +1,8 @@
 #pragma once
 // Areas common to a disk and the cross-sections of zones, in closed form. Lengths [m], areas [m²], angles [rad].
-#include <limits>
+#include "measure/range.hpp"
 
 namespace eg {
-
-struct Range {
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-
-  double length() const { return high - low; }
-  bool holds(double value) const { return value >= low && value < high; }
-};
 
 /// Disk around the origin and the rectangle x × y.
 double disk_in_rectangle(double radius, const Range& x, const Range& y);

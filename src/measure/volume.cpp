@@ -34,16 +34,19 @@ double lens_volume(int dimension, double ri, double rj, double distance) {
   return cap_volume(dimension, ri, ri - hi) + cap_volume(dimension, rj, rj - hj);
 }
 
+Range wall_gap(const State& state, int k) {
+  Range gap;
+  for (const Wall& wall : state.walls) {
+    if (wall.normal[k] == 1) gap.low = std::max(gap.low, wall.point[k]);
+    if (wall.normal[k] == -1) gap.high = std::min(gap.high, wall.point[k]);
+  }
+  return gap;
+}
+
 double specimen_volume(const State& state) {
   Mat3 edges = state.cell.h;
-  for (int k = 0; k < state.dimension; ++k) {
-    double low = -INFINITY, high = INFINITY;
-    for (const Wall& wall : state.walls) {
-      if (wall.normal[k] == 1) low = std::max(low, wall.point[k]);
-      if (wall.normal[k] == -1) high = std::min(high, wall.point[k]);
-    }
-    if (std::isfinite(high - low)) edges(k, k) = high - low;
-  }
+  for (int k = 0; k < state.dimension; ++k)
+    if (const double gap = wall_gap(state, k).length(); std::isfinite(gap)) edges(k, k) = gap;
   return edges(0, 0) * edges(1, 1) * edges(2, 2);
 }
 

@@ -85,6 +85,29 @@ TEST_F(MeasureCommand, ASnapshotGivesTheLastRowOfItsHistory) {
   }
 }
 
+TEST_F(MeasureCommand, ZonesShareOutTheGrains) {
+  const json j = measure(test::case_file("lattice_fcc") +
+                         " --initial --zones radial:4,sector:3 --zones height:5 --zones x:3,y:0/0.001/0.002");
+  ASSERT_EQ(j.at("zones").size(), 3u);
+  EXPECT_EQ(j["zones"][0]["table"].size(), 12u);
+  EXPECT_EQ(j["zones"][2]["table"].size(), 6u);
+  EXPECT_EQ(j["zones"][0]["container"]["shape"], "cylinder");
+  for (const auto& zones : j["zones"]) {
+    double solid = 0, volume = 0;
+    for (const auto& row : zones.at("table"))
+      solid += row.at("solid_volume").get<double>(), volume += row.at("volume").get<double>();
+    EXPECT_NEAR(solid / zones.at("solid_volume").get<double>(), 1, 1e-13);
+    EXPECT_NEAR(volume / zones.at("volume").get<double>(), 1, 1e-13);
+    EXPECT_NEAR(zones.at("void_ratio").get<double>(), volume / solid - 1, 1e-12);
+  }
+  const json layers = measure(test::case_file("settling_box") +
+                              " --set specimen.count=50 --initial --zones z:4 --zones height:2 "
+                              "--zone-axis x");
+  EXPECT_NEAR(layers["zones"][0]["solid_fraction"].get<double>(), layers["specimen"]["solid_fraction"].get<double>(),
+              1e-12);
+  EXPECT_EQ(layers["zones"][1]["container"]["axis"], "x");
+}
+
 TEST_F(MeasureCommand, HistoriesArePlottedAndAveraged) {
   std::filesystem::create_directories(folder / "a");
   const std::string history = file("a/history.csv");
@@ -128,7 +151,13 @@ TEST_F(MeasureCommand, MemoryHoldsOnlyWhatTheSceneNeeds) {
 
 TEST_F(MeasureCommand, EveryKeyIsDocumented) {
   const std::string text = read_file(EIGENGRAIN_SOURCE_DIR "/docs/measures.md");
-  const json j = measure(test::case_file("lattice_fcc") + " --initial --sphere 0,0,0,0.004");
+  const json j =
+      measure(test::case_file("lattice_fcc") + " --initial --sphere 0,0,0,0.004 --zones radial:2 --zones x:2");
+  for (const auto& zones : j.at("zones")) {
+    for (const auto& [key, value] : zones.items()) EXPECT_NE(text.find("`" + key + "`"), std::string::npos) << key;
+    for (const auto& [key, value] : zones.at("table")[0].items())
+      EXPECT_NE(text.find("`" + key + "`"), std::string::npos) << key;
+  }
   for (const auto& [section, rows] : j.at("units").items())
     for (const auto& [key, unit] : rows.items()) {
       const auto stem = key.substr(0, key.find_last_of('_'));  // components are written `stress_x` … `stress_xy`
