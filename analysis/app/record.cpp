@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "boundary/body_control.hpp"
 #include "boundary/cell_control.hpp"
 #include "measure/stress.hpp"
 #include "measure/tensor.hpp"
@@ -95,6 +96,53 @@ void add_energy_columns(Columns& c, const std::string& joule) {
   c.push_back({{"energy_residual", joule}, [](const RowSource& r) { return r.energy.residual; }});
 }
 
+/// Of a stack of rings: how far its rings stand out of balance, and how far the furthest has gone.
+void add_stack_columns(Columns& c, const Scene& scene, const std::string& group) {
+  const auto over = [&scene, group](const State& state, auto&& visit) {
+    for (std::size_t b = 0; b < state.bodies.size(); ++b)
+      if (scene.boundary.bodies[b].group == group) visit(state.bodies[b]);
+  };
+  c.push_back({{group + "_resultant_share", "-"}, [over](const RowSource& r) {
+                 double sum = 0, count = 0;
+                 over(r.state, [&](const Body& b) {
+                   Vec3 free = b.force;
+                   for (int k = 0; k < 3; ++k)
+                     if (!b.free[static_cast<std::size_t>(k)]) free[k] = 0;
+                   if (b.magnitude > 0) sum += norm(free) / b.magnitude, count += 1;
+                 });
+                 return count > 0 ? sum / count : 0.0;
+               }});
+  c.push_back({{group + "_largest_displacement", "m"}, [over](const RowSource& r) {
+                 double most = 0;
+                 over(r.state, [&](const Body& b) { most = std::max(most, norm(b.moved)); });
+                 return most;
+               }});
+}
+
+/// What each part of the apparatus feels (force of the grains on it) and how far it has gone since the stage began.
+void add_body_columns(Columns& c, const Scene& scene) {
+  const auto& bodies = scene.boundary.bodies;
+  const std::string pressure = scene.dimension == 3 ? "Pa" : "N/m";
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (!bodies[b].group.empty()) {
+      if (b == 0 || bodies[b - 1].group != bodies[b].group) add_stack_columns(c, scene, bodies[b].group);
+      continue;
+    }
+    for (int k = 0; k < scene.dimension; ++k) {
+      const std::string axis(1, "xyz"[k]);
+      c.push_back({{bodies[b].name + "_force_" + axis, "N"}, [b, k](const RowSource& r) { return r.state.bodies[b].force[k]; }});
+      c.push_back({{bodies[b].name + "_moved_" + axis, "m"}, [b, k](const RowSource& r) { return r.state.bodies[b].moved[k]; }});
+    }
+    c.push_back({{bodies[b].name + "_stress", pressure}, [b](const RowSource& r) {
+                   return body_load(r.scene, r.state, drive_of(r.scene, r.state, b)).stress();
+                 }});
+    const bool round = std::ranges::any_of(scene.boundary.walls, [b](const WallSpec& w) {
+      return w.body == b && w.shape == WallSpec::Shape::cylinder;
+    });
+    if (round) c.push_back({{bodies[b].name + "_opened", "m"}, [b](const RowSource& r) { return r.state.bodies[b].opened; }});
+  }
+}
+
 Columns columns_of(const Scene& scene) {
   const std::string joule = scene.dimension == 3 ? "J" : "J/m";
   Columns c;
@@ -102,6 +150,7 @@ Columns columns_of(const Scene& scene) {
   add_stress_columns(c, scene.dimension, scene.dimension == 3 ? "Pa" : "N/m");
   add_network_columns(c, joule);
   add_fabric_columns(c, scene.dimension);
+  add_body_columns(c, scene);
   if (scene.energy) add_energy_columns(c, joule);
   return c;
 }

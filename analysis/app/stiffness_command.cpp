@@ -46,14 +46,8 @@ std::vector<Vec3> directions_of(const StiffnessFlags& flags, int dimension) {
 /// Distances of parallel walls across x, y, z; 0 where there is no pair.
 std::array<double, 3> wall_distances(const State& state) {
   std::array<double, 3> distance{};
-  for (int k = 0; k < state.dimension; ++k) {
-    double low = -INFINITY, high = INFINITY;
-    for (const Wall& wall : state.walls) {
-      if (wall.normal[k] == 1) low = std::max(low, wall.point[k]);
-      if (wall.normal[k] == -1) high = std::min(high, wall.point[k]);
-    }
-    if (std::isfinite(high - low)) distance[static_cast<std::size_t>(k)] = high - low;
-  }
+  for (int k = 0; k < state.dimension; ++k)
+    if (const double gap = wall_gap(state, k).length(); std::isfinite(gap)) distance[static_cast<std::size_t>(k)] = gap;
   return distance;
 }
 

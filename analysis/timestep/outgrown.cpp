@@ -4,13 +4,14 @@
 
 #include "contact/interaction.hpp"
 #include "contact/lanes.hpp"
+#include "state/wall_geometry.hpp"
 
 namespace eg {
 namespace {
 
 double fastest_wall(const State& state) {
   double speed = 0;
-  for (const auto& w : state.walls) speed = std::max(speed, norm(w.velocity));
+  for (const auto& b : state.bodies) speed = std::max(speed, norm(b.velocity) + std::abs(b.opening));
   return speed;
 }
 
@@ -77,7 +78,7 @@ std::vector<std::size_t> outgrown_walls(const State& state, std::span<const doub
     const auto& contact = state.wall_contacts[c];
     const Wall& wall = state.walls[contact.wall];
     const Quad& p = state.grains.position[contact.grain];
-    const auto g = grain_plane(dot(p.vec() - wall.point, wall.normal), wall.normal, p.w, Arms::surface);
+    const auto g = grain_surface(state, wall, p.vec(), p.w, Arms::surface);  // it may come into the window
     if (g.overlap + forecast(state, contact.grain, no_index, g, time).growth > allowed[c]) found.push_back(c);
   }
   return found;

@@ -23,7 +23,7 @@ double speed(const State& state) {
 State perturbed(const State& state, const SolverLimitOptions& options) {
   State s = state;
   s.cell.rate = Mat3{};
-  for (auto& w : s.walls) w.velocity = Vec3{};
+  for (auto& b : s.bodies) b.velocity = Vec3{}, b.opening = 0;
   double smallest = INFINITY, lightest = 0;
   for (std::size_t i = 0; i < s.grains.size(); ++i) {
     smallest = std::min(smallest, s.grains.radius(i));

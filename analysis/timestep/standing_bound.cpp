@@ -85,7 +85,9 @@ Block block_of(const Sides& sides, const std::vector<double>& t, Index grain) {
 Spring StandingBounds::counted(const State& state, const ContactPoint& p) const {
   const auto& velocity = state.grains.velocity;  // w: inverse mass
   const double inverse_mass = velocity[p.i].w + (p.j == no_index ? 0.0 : velocity[p.j].w);
-  return damped_spring(spring_of(p), inverse_mass, damping_, state.policy.bound.step);
+  Spring spring = damped_spring(spring_of(p), inverse_mass, damping_, state.policy.bound.step);
+  spring.normal *= p.give, spring.tangential *= p.give;
+  return spring;
 }
 
 void StandingBounds::remember(const State& state) {

@@ -72,7 +72,7 @@ class Test {
       if (state_.grains.rotates()) state_.grains.spin[i].w = 0;
     }
     state_.cell.rate = {}, state_.dt = setup.dt;
-    for (auto& wall : state_.walls) wall.velocity = {};
+    for (auto& body : state_.bodies) body.velocity = {}, body.opening = 0;
     for (const auto& q : state_.grains.position) start_.push_back(q.vec()[setup.motion]);
     scene_ = scene;
     scene_.damping = {.normal_ratio = setup.damping, .shear_ratio = setup.damping};

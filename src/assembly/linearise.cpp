@@ -4,6 +4,7 @@
 
 #include "contact/lanes.hpp"
 #include "contact/laws.hpp"
+#include "state/wall_geometry.hpp"
 
 namespace eg {
 namespace {
@@ -25,9 +26,7 @@ TangentBlock tangent(const ContactPoint& p, const State& state,
   const D12 ri(grains.radius(p.i)), rj(wall ? 0.0 : grains.radius(p.j));
   Geometry<D12> g;
   if (wall) {
-    const Wall& w = state.walls[p.wall];
-    g = grain_plane<D12>(dot(constant(grains.position[p.i].vec() - w.point) + ui, constant(w.normal)),
-                         constant(w.normal), ri, arms);
+    g = grain_wall<D12>(state, state.walls[p.wall], constant(grains.position[p.i].vec()) + ui, ri, arms);
   } else {
     g = grain_grain<D12>(constant(p.branch) + uj - ui, ri, ri + rj, arms);
   }
@@ -51,7 +50,7 @@ TangentBlock tangent(const ContactPoint& p, const State& state,
 
 Spring spring_of(const ContactPoint& p) {
   const Geometry<double>& g = p.geometry;
-  return {p.i, p.j, g.arm_i, g.arm_j, p.normal.stiffness, p.normal.tangential, g.n, norm(p.branch)};
+  return {p.i, p.j, g.arm_i, g.arm_j, p.normal.stiffness, p.normal.tangential, g.n, norm(p.branch), p.give};
 }
 
 Network bare_network(const Scene& scene, const State& state) {

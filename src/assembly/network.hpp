@@ -15,6 +15,8 @@ struct Spring {
   double normal = 0, tangential = 0;  ///< kn, kt [N/m]
   Vec3 n;                             ///< unit, from i to j
   double length = 0;  ///< of the branch [m]: distance of the centres; wall: of the centre from its plane
+  double give = 1;    ///< how many times its stiffness counts in an upper bound of λmax: more than once where the wall
+                      ///< answers forces (docs/walls.md)
 };
 
 /// Masses enter as inverses: 0 is a grain that cannot move (or turn). Order of grains as in State::grains.

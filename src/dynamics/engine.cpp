@@ -34,7 +34,16 @@ Engine::Engine(const Scene& scene, State& state, bool scalar) : scene_(scene), s
   forces(0, TallyLevel::works);
 }
 
-void Engine::refresh_workspace() { prepare(work_, state_, *loop_); }
+void Engine::refresh_workspace() {
+  prepare(work_, state_, *loop_);
+  glued_rows_.clear();
+  if (state_.glued.empty()) return;
+  glued_to_.assign(state_.grains.size(), no_index);
+  for (const auto& g : state_.glued) glued_to_[g.grain] = g.body, glued_rows_.push_back({g.grain, g.body});
+  for (std::size_t e = 0; e < work_.schedule.gather_row.size(); ++e)
+    if (const Index b = glued_to_[work_.schedule.gather_grain[e]]; b != no_index)
+      glued_rows_.push_back({work_.schedule.gather_row[e], b});
+}
 
 void Engine::set_friction(const std::vector<double>& friction) {
   state_.friction = friction;
@@ -46,12 +55,17 @@ void Engine::forces(double dt, TallyLevel tally) { forces(dt, tally, {}); }
 void Engine::forces(double dt, TallyLevel tally, const AfterChunk& after) {
   options_.tally = level_ = tally;
   const Mat3 virial_before = state_.virial;
-  double wall_power = 0;
-  for (const auto& w : state_.walls) wall_power -= 0.5 * dot(w.force, w.velocity);
+  const double power_before = body_power(state_);
+  for (auto& b : state_.bodies) b.force = Vec3{}, b.spread = b.magnitude = b.stiffness = 0;
   work_.clear();
   Tally now;
   if (!state_.walls.empty()) now = loop_->walls(state_, work_, dt, options_);
-  const Tally grains = loop_->contacts(state_, work_, dt, options_, after);
+  const Tally grains = loop_->contacts(state_, work_, dt, options_, state_.glued.empty() ? after : AfterChunk{});
+  if (!state_.glued.empty()) {
+    weigh_glued();
+    if (after)
+      for (std::size_t k = 0; k < work_.schedule.chunks(); ++k) after(k);
+  }
   if (tally == TallyLevel::none) return;
   const Mat3 virial = grains.virial;
   now += grains;
@@ -62,12 +76,39 @@ void Engine::forces(double dt, TallyLevel tally, const AfterChunk& after) {
   e.shear_work += now.shear_work, e.friction += now.friction, e.viscous_damping += now.viscous;
   for (std::size_t k = 0; k < 9; ++k)
     e.boundary -= 0.5 * (virial_before.a[k] + virial.a[k]) * state_.cell.rate.a[k] * dt;
-  for (const auto& w : state_.walls) wall_power -= 0.5 * dot(w.force, w.velocity);
-  e.boundary += wall_power * dt;
+  e.boundary += 0.5 * (power_before + body_power(state_)) * dt;
+}
+
+/// What grains receive from driven bodies [W]; the energy of bodies that go where forces take them is the system's own.
+double Engine::body_power(const State& state) {
+  double power = 0;
+  for (const auto& b : state.bodies) {
+    for (int k = 0; k < 3; ++k)
+      if (!b.free[static_cast<std::size_t>(k)]) power -= b.force[k] * b.velocity[k];
+    power -= b.spread * b.opening;
+  }
+  return power;
+}
+
+/// What grains do to a glued one, they do to its body.
+void Engine::weigh_glued() {
+  for (const auto& [row, body] : glued_rows_) state_.bodies[body].force += work_.rows[row * work_.stride].vec();
+  if (state_.step % 64 == 0 || weigh_anew_) {
+    for (auto& b : state_.bodies) b.glued_stiffness = 0;
+    visit_contacts(scene_, state_, [&](const ContactPoint& p) {
+      if (p.j == no_index || glued_to_[p.i] == glued_to_[p.j]) return;
+      for (const Index g : {p.i, p.j})
+        if (glued_to_[g] != no_index)
+          state_.bodies[glued_to_[g]].glued_stiffness += std::max(p.normal.stiffness, p.normal.tangential);
+    });
+    weigh_anew_ = false;
+  }
+  for (auto& b : state_.bodies) b.stiffness += b.glued_stiffness;
 }
 
 void Engine::drift() {
   const double dt = state_.dt;
+  for (const auto& g : state_.glued) state_.grains.velocity[g.grain].set(state_.bodies[g.body].velocity);
   travelled_ += (travelled_ * norm(state_.cell.rate) + eg::drift(state_, dt)) * dt;
   if (used_skin(state_, travelled_) > 0.999 * state_.list.contact_skin) {  // rounding aside, the bound tells
     const double begin = omp_get_wtime();
@@ -99,6 +140,7 @@ void Engine::end_kick(double next_dt) {
   work_.clean = true;
   sums_ = {};
   for (const auto& s : work_.kick_sums) sums_ += s;
+  if (!state_.bodies.empty()) sums_ += kick_bodies(state_, 0.5 * (last_dt_ + next_dt), kick_);
   auto& e = state_.ledger;
   e.local_damping += sums_.local_damping, e.mass_damping += sums_.mass_damping;
   e.body += sums_.body, e.boundary += sums_.affine;

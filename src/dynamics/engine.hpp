@@ -24,6 +24,8 @@ class Engine {
     drift();
     respond(dt, tally);
   }
+  /// What may move has changed (grains were glued): scratch that depends on it is made anew.
+  void renew() { refresh_workspace(), weigh_anew_ = true; }
   /// Velocities alone, by forces() at hand: the half kick at the start.
   void kick(double next_dt);
 
@@ -41,6 +43,8 @@ class Engine {
   void refresh_workspace();
   void forces(double dt, TallyLevel tally, const AfterChunk& after);
   void end_kick(double next_dt);
+  void weigh_glued();
+  static double body_power(const State& state);
 
   const Scene& scene_;
   State& state_;
@@ -53,6 +57,9 @@ class Engine {
   TallyLevel level_ = TallyLevel::none;
   double last_dt_ = 0;
   double upkeep_ = 0;
+  std::vector<Index> glued_to_;  ///< body of every grain, or none; empty when nothing is glued
+  bool weigh_anew_ = false;  ///< stiffness against glued grains is worked out now and then, and when grains were glued
+  std::vector<std::pair<std::size_t, Index>> glued_rows_;  ///< rows of the workspace that add up to what a body feels
   double travelled_ = 1e300;  ///< bound of displacement() [m]; the true one is worked out when the bound calls for it
 };
 

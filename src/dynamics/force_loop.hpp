@@ -73,7 +73,7 @@ class ForceLoop {
   /// hand; it may change their velocities. Deterministic for any number of threads.
   virtual Tally contacts(State& state, ForceWorkspace& work, double dt, const ForceOptions& options,
                          const AfterChunk& after) const = 0;
-  /// Adds the wall contacts; sets Wall::force.
+  /// Adds the wall contacts, to the forces on bodies too.
   virtual Tally walls(State& state, ForceWorkspace& work, double dt, const ForceOptions& options) const = 0;
 };
 

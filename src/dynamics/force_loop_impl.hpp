@@ -4,6 +4,7 @@
 
 #include "contact/lanes.hpp"
 #include "dynamics/force_loop.hpp"
+#include "state/wall_geometry.hpp"
 
 namespace eg {
 
@@ -227,14 +228,15 @@ template <class Law, bool rotation>
 Tally ForceLoopOf<Law, rotation>::walls(State& state, ForceWorkspace& work, double dt,
                                         const ForceOptions& options) const {
   Tally tally;
-  for (auto& w : state.walls) w.force = Vec3{};
   for (auto& c : state.wall_contacts) {
-    Wall& wall = state.walls[c.wall];
+    const Wall& wall = state.walls[c.wall];
+    Body& body = state.bodies[wall.body];
     const Quad& p = state.grains.position[c.grain];
     const Quad& v = state.grains.velocity[c.grain];
-    const auto g = grain_plane<double>(dot(p.vec() - wall.point, wall.normal), wall.normal, p.w, options.arms);
+    const auto g = grain_wall<double>(state, wall, p.vec(), p.w, options.arms);
+    const Vec3 outward = radial(wall, g.n);
     const Vec3 turned = rotation ? state.grains.spin[c.grain].vec() * dt : Vec3{};
-    const auto motion = wall_motion<double>((wall.velocity - v.vec()) * dt, turned, p.w);
+    const auto motion = wall_motion<double>((body.velocity + outward * body.opening - v.vec()) * dt, turned, p.w);
     const auto inc = increment<rotation>(g, motion);
     const auto& constants = constants_[state.grains.material_of(c.grain) * kinds_ + wall.material];
     const auto pair = Law::template pair<double>(constants, wall_sizes(p.w));
@@ -248,7 +250,12 @@ Tally ForceLoopOf<Law, rotation>::walls(State& state, ForceWorkspace& work, doub
     Quad* row = work.rows.data() + work.stride * c.grain;
     row[0].set(row[0].vec() - f.on_j);
     if constexpr (rotation) row[1].set(row[1].vec() + f.moment * g.arm_i);
-    wall.force += f.on_j;
+    body.force += f.on_j;
+    body.spread += dot(f.on_j, outward);
+    if (g.overlap > 0) {
+      body.magnitude += norm(f.on_j);
+      body.stiffness += std::max(f.law.normal.stiffness, f.law.normal.tangential);
+    }
     if (options.tally != TallyLevel::works) continue;
     Sums<double> sums;
     add_works(sums, inc, f, g.overlap > 0);

@@ -124,6 +124,19 @@ KickSums& KickSums::operator+=(const KickSums& b) {
   return *this;
 }
 
+/// A plane without a window may slide along itself without coming nearer to any grain.
+static void move_bodies(State& state, double dt) {
+  for (auto& body : state.bodies) body.moved += body.velocity * dt, body.opened += body.opening * dt;
+  for (auto& w : state.walls) {
+    const Body& body = state.bodies[w.body];
+    w.point += body.velocity * dt;
+    const bool slides = w.shape == Wall::plane && !w.windowed();
+    double way = slides ? std::abs(dot(body.velocity, w.normal)) : norm(body.velocity);
+    if (w.shape == Wall::cylinder) w.radius += body.opening * dt, way += std::abs(body.opening);
+    w.moved += way * dt;
+  }
+}
+
 double drift(State& state, double dt) {
   auto& g = state.grains;
   const Mat3 stretch = state.cell.deform(dt);
@@ -144,10 +157,7 @@ double drift(State& state, double dt) {
     }
     fastest = std::max(fastest, std::sqrt(total(most)));
   }
-  for (auto& w : state.walls) {
-    w.point += w.velocity * dt;
-    w.moved += std::abs(dot(w.velocity, w.normal)) * dt;
-  }
+  move_bodies(state, dt);
   return fastest;
 }
 
@@ -169,6 +179,22 @@ void kick_chunk(State& state, ForceWorkspace& work, std::size_t k, double dt, co
         works ? kick_rows<true, V>(state, work, k, dt, options) : kick_rows<false, V>(state, work, k, dt, options);
   };
   work.stride == 2 ? run(Double8{}) : run(Double4{});
+}
+
+KickSums kick_bodies(State& state, double dt, const KickOptions& options) {
+  KickSums sums;
+  for (auto& body : state.bodies)
+    for (int k = 0; k < 3; ++k) {
+      if (!body.free[static_cast<std::size_t>(k)]) continue;
+      const double before = body.velocity[k], rate = body.force[k] / body.mass;
+      const double sign = before > 0 ? 1.0 : before < 0 ? -1.0 : 0.0;
+      const double damping = -options.local * std::abs(rate) * sign;
+      body.velocity[k] += (rate + damping - options.mass * before) * dt;
+      const double path = 0.5 * (before + body.velocity[k]) * dt * body.mass;
+      sums.kinetic += 0.5 * body.mass * before * body.velocity[k];
+      sums.local_damping -= damping * path, sums.mass_damping += options.mass * before * path;
+    }
+  return sums;
 }
 
 }  // namespace eg

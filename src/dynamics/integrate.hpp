@@ -13,6 +13,9 @@ struct KickOptions {
 /// x ← exp(L dt) x + dt c, cell and walls with it. Returns a bound of the largest peculiar velocity [m/s].
 double drift(State& state, double dt);
 
+/// Velocities of bodies along the axes in which they are free, by the forces of the grains, with the same damping.
+KickSums kick_bodies(State& state, double dt, const KickOptions& options);
+
 /// Largest peculiar displacement since contacts were refreshed [m].
 double displacement(const State& state);
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/error.hpp"
+#include "boundary/body_control.hpp"
 #include "boundary/cell_control.hpp"
 #include "state/damping.hpp"
 
@@ -25,11 +26,19 @@ void begin_stage(const Scene& scene, State& state) {
   state.servo = {};
   state.cycle = {};
   state.policy = {};
+  begin_body_stage(scene, state);
 }
 
 void apply_stage(const Scene& scene, const State& state, Engine& engine) {
   engine.set_friction(std::vector<double>(state.friction));
   engine.set_local_damping(damping_in_force(scene, state).local);
+}
+
+void glue(const Scene& scene, State& state, Engine& engine) {
+  const auto& bodies = scene.stages[state.stage].glue;
+  if (bodies.empty()) return;
+  glue_grains(state, bodies);
+  engine.renew();
 }
 
 /// A cycle ends when its quantity is back at the mean after both limits.
@@ -51,6 +60,7 @@ bool finished(const State& state, const StageSpec& s, const RunStatus& status, b
   if (given(s.until_time) && state.stage_time < s.until_time) return false;
   if (given(s.until_axial_strain) && axial_strain(state) < s.until_axial_strain) return false;
   if (given(s.until_shear_strain) && shear_strain(state) < s.until_shear_strain) return false;
+  if (given(s.until_displacement) && largest_displacement(state) < s.until_displacement) return false;
   if (given(s.until_cycles) && !cycles_done(state, s)) return false;
   if (given(s.until_stress_error) && !(status.stress_error < s.until_stress_error)) return false;
   if (given(s.until_unbalanced) && !(status.unbalanced < s.until_unbalanced)) return false;
@@ -61,7 +71,8 @@ bool every(const State& state, double n) {
   return given(n) && std::fmod(static_cast<double>(state.stage_step), n) == 0;
 }
 double record_interval(const StageSpec& s) {
-  return given(s.record_every_steps) || given(s.record_every_strain) ? s.record_every_steps : 1000;
+  const bool otherwise = given(s.record_every_strain) || given(s.record_every_displacement);
+  return given(s.record_every_steps) || otherwise ? s.record_every_steps : 1000;
 }
 
 /// What a step must add up: all that checks and rows need at every tenth step and where a row falls by steps, the
@@ -69,63 +80,86 @@ double record_interval(const StageSpec& s) {
 TallyLevel tally_level(const State& state, const StageSpec& s) {
   if (state.stage_step % 10 == 0 || every(state, record_interval(s)) || every(state, s.until_steps))
     return TallyLevel::works;
-  return needs_stress(s) || given(s.record_every_strain) ? TallyLevel::stress : TallyLevel::none;
+  return needs_stress(s) || given(s.record_every_strain) || given(s.record_every_displacement) ? TallyLevel::stress : TallyLevel::none;
 }
 
 /// The strain that rows by strain go by: axial, or the largest shear where that is more.
 double row_strain(const State& state) { return std::max(axial_strain(state), shear_strain(state)); }
 
-/// Whether a row is due: by steps, or by row_strain() passing a multiple of the interval.
-bool due(const State& state, const StageSpec& s, double strain_before) {
-  if (given(s.record_every_strain)) {
-    const double now = row_strain(state);
-    if (std::floor(now / s.record_every_strain) != std::floor(strain_before / s.record_every_strain)) return true;
-  }
-  return every(state, record_interval(s));
+/// How far the stage has come in what rows may go by.
+struct Progress {
+  double strain, displacement;
+};
+Progress progress_of(const State& state) { return {row_strain(state), largest_displacement(state)}; }
+
+bool passes(double before, double now, double interval) {
+  return given(interval) && std::floor(now / interval) != std::floor(before / interval);
+}
+
+/// Whether a row is due: by steps, or by strain or displacement passing a multiple of the interval.
+bool due(const State& state, const StageSpec& s, const Progress& before) {
+  const Progress now = progress_of(state);
+  return passes(before.strain, now.strain, s.record_every_strain) ||
+         passes(before.displacement, now.displacement, s.record_every_displacement) ||
+         every(state, record_interval(s));
+}
+
+/// The policy's step, but not beyond what bodies that move freely allow. A fixed step stays as it was ordered.
+double next_step(const Scene& scene, State& state, StepPolicy& policy) {
+  const double dt = policy.next_step(state);
+  return scene.timestep.policy == "fixed" ? dt : std::min(dt, body_step_limit(state));
 }
 
 }  // namespace
 
 bool run_stages(const Scene& scene, State& state, StepPolicy& policy, const RunObserver& observer, bool scalar) {
   if (state.stage >= scene.stages.size()) return true;
-  if (state.step == 0 && state.stage == 0) begin_stage(scene, state);
+  const bool begins = state.step == 0 && state.stage == 0;
+  if (begins) begin_stage(scene, state);
   Engine engine(scene, state, scalar);
+  if (begins) glue(scene, state, engine);
   apply_stage(scene, state, engine);
   policy.begin(state);
   std::optional<CellControl> control(std::in_place, scene.stages[state.stage], state, scene.materials.front().density);
+  std::optional<BodyControl> bodies(std::in_place, scene, state);
   if (state.step == 0) {  // half a kick, velocities move on to dt/2; the step is chosen knowing how the cell sets out
     control->set_rate(state, policy.next_step(state));
     state.policy = {};
-    engine.kick(policy.next_step(state));
+    engine.kick(next_step(scene, state, policy));
+    bodies->drive(state, state.dt);
   }
 
   while (state.stage < scene.stages.size()) {
     const StageSpec& stage = scene.stages[state.stage];
-    const double strain_before = row_strain(state);
+    const Progress before = progress_of(state);
     ++state.stage_step;
     const TallyLevel level = tally_level(state, stage);
     const double taken = state.dt;
     engine.drift();
     state.stage_time += taken;
-    engine.respond(policy.next_step(state), level);
+    engine.respond(next_step(scene, state, policy), level);
     control->set_rate(state, taken);
+    bodies->drive(state, state.dt);
     const bool checked = level == TallyLevel::works;
     if (checked) state.unbalanced = engine.unbalanced_ratio(), state.kinetic = engine.kick_sums().kinetic;
 
-    const RunStatus status{stage, engine, state.unbalanced, stress_error(state, stage), state.kinetic};
+    const RunStatus status{stage, engine, state.unbalanced, std::max(stress_error(state, stage), servo_error(scene, state)), state.kinetic};
     if (!std::isfinite(status.kinetic))
       throw RunError(fmt::format(
           "step {}: the motion is no longer finite; the step {:.3g} s was unstable: use policy = \"certified\"",
           state.step, taken));
     const bool ends = finished(state, stage, status, checked);
     if (observer.step) observer.step(state, status);
-    if (observer.record && (ends || due(state, stage, strain_before))) observer.record(state, status);
+    if (observer.record && (ends || due(state, stage, before))) observer.record(state, status);
     if (ends) {
       if (observer.stage_end) observer.stage_end(state, stage);
       if (++state.stage < scene.stages.size()) {
         begin_stage(scene, state), apply_stage(scene, state, engine);
         control.emplace(scene.stages[state.stage], state, scene.materials.front().density);
         control->set_rate(state, taken);  // the cell is not to drift on at the rates of the stage before
+        glue(scene, state, engine);
+        bodies.emplace(scene, state);
+        bodies->drive(state, state.dt);
       }
     } else if (static_cast<double>(state.stage_step) >= stage.max_steps) {
       const TargetMiss missed = worst_target(state, stage);

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "contact/laws.hpp"
+#include "io/boundary_reader.hpp"
 #include "io/scene_settings.hpp"
 #include "io/stage_reader.hpp"
 #include "io/text_file.hpp"
@@ -20,12 +21,6 @@ namespace {
 
 constexpr auto required = Need::required;
 using NamedTables = std::vector<std::pair<std::string, TomlReader>>;
-
-std::vector<std::string> material_names(const Scene& scene) {
-  std::vector<std::string> names;
-  for (const auto& m : scene.materials) names.push_back(m.name);
-  return names;
-}
 
 Material read_material(const std::string& name, const TomlReader& t) {
   Material m;
@@ -197,51 +192,6 @@ void read_specimen(const TomlReader& t, int dimension, SpecimenSpec& s) {
   t.finish();
 }
 
-/// A vector of the scene's dimension; the third component of a 2D one is 0.
-bool read_vector(const TomlReader& t, std::string_view key, int dimension, Vec3& out, Need need = Need::optional) {
-  std::array<double, 3> x{};
-  if (!t.numbers(key, std::span(x).first(static_cast<std::size_t>(dimension)), any_number, need)) return false;
-  out = {x[0], x[1], x[2]};
-  return true;
-}
-
-WallSpec read_wall(const TomlReader& t, const Scene& scene) {
-  WallSpec wall;
-  t.name("name", wall.name, required);
-  read_vector(t, "point", scene.dimension, wall.point, required);
-  read_vector(t, "normal", scene.dimension, wall.normal, required);
-  const double length = norm(wall.normal);
-  if (!(length > 0) || !std::isfinite(length)) throw t.error("normal", "must have a length above 0");
-  wall.normal *= 1 / length;
-  read_vector(t, "velocity", scene.dimension, wall.velocity);
-  wall.material = scene.materials[0].name;
-  t.choice("material", wall.material, material_names(scene), scene.materials.size() > 1 ? required : Need::optional);
-  t.finish();
-  return wall;
-}
-
-void read_boundary(const TomlReader& t, Scene& scene) {
-  using Kind = BoundarySpec::Kind;
-  auto& b = scene.boundary;
-  t.choice<Kind>("type", b.kind, {{"periodic", Kind::periodic}, {"free", Kind::free}, {"box", Kind::box}}, required);
-  if (b.kind == Kind::box) {
-    b.wall_material = scene.materials[0].name;
-    t.choice("wall_material", b.wall_material, material_names(scene),
-             scene.materials.size() > 1 ? required : Need::optional);
-  } else if (t.has("wall_material")) {
-    throw t.error("wall_material", "is read with type = \"box\" only", "remove one of the two");
-  }
-  if (b.kind == Kind::periodic && t.has("wall"))
-    throw t.error("wall", "cannot stand in a cell that is periodic in every direction",
-                  "set boundary.type to \"free\" or \"box\"");
-  for (const auto& wall : t.tables("wall")) {
-    b.walls.push_back(read_wall(wall, scene));
-    for (std::size_t k = 0; k + 1 < b.walls.size(); ++k)
-      if (b.walls[k].name == b.walls.back().name) throw wall.error("name", "is the name of another wall already");
-  }
-  t.finish();
-}
-
 void read_damping(const TomlReader& t, DampingSpec& d) {
   t.number("local", d.local, from_below(0, 1));
   t.number("mass", d.mass, non_negative);
@@ -277,7 +227,7 @@ void read_top(const TomlReader& top, Scene& scene) {
   top.integer("dimension", scene.dimension, closed(2, 3), required);
   top.flag("rotation", scene.rotation);
   top.integer("seed", scene.seed, closed(0, 0x1p53 - 1));
-  read_vector(top, "gravity", scene.dimension, scene.gravity);
+  top.vector("gravity", scene.dimension, scene.gravity);
   const auto materials = read_materials(top, scene);
   read_contact(*top.table("contact", required), materials, scene);
   read_specimen(*top.table("specimen", required), scene.dimension, scene.specimen);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/boundary_reader.hpp"
 #include "state/drive.hpp"
 
 namespace eg {
@@ -188,22 +189,26 @@ void read_until(const TomlReader& t, StageSpec& stage) {
   any |= t.integer("steps", stage.until_steps, counting);
   any |= t.number("axial_strain", stage.until_axial_strain, positive);
   any |= t.number("shear_strain", stage.until_shear_strain, positive);
+  any |= t.number("displacement", stage.until_displacement, positive);
   const bool cycles = t.integer("cycles", stage.until_cycles, counting);
   t.finish();
   if (!any && !cycles)
     throw t.error(
         "", "names no condition",
-        "give at least one of stress_error, unbalanced_force, time, steps, axial_strain, shear_strain, cycles");
+        "give at least one of stress_error, unbalanced_force, time, steps, axial_strain, shear_strain, displacement, "
+        "cycles");
   const bool aims = std::ranges::any_of(stage.control, [](const auto& c) { return c.kind == Kind::stress; }) ||
-                    std::ranges::any_of(stage.hold, [](const auto& c) { return c.quantity == Quantity::stress; });
+                    std::ranges::any_of(stage.hold, [](const auto& c) { return c.quantity == Quantity::stress; }) ||
+                    std::ranges::any_of(stage.bodies, [](const auto& b) { return b.servo != BodyDrive::Servo::none; });
   if (error && !aims)
-    throw t.error("stress_error", "needs a stress that is aimed at", "add stress or hold to the stage");
+    throw t.error("stress_error", "needs a stress that is aimed at", "add stress or hold to the stage, or a servo to a body");
   if (cycles && !stage.cycle) throw t.error("cycles", "needs a cycle to count", "add cycle = { … } to the stage");
 }
 
 void read_record(const TomlReader& t, StageSpec& stage) {
   t.integer("every_steps", stage.record_every_steps, counting);
   t.number("every_strain", stage.record_every_strain, positive);
+  t.number("every_displacement", stage.record_every_displacement, positive);
   t.integer("snapshot_every_steps", stage.snapshot_every_steps, counting);
   t.finish();
 }
@@ -214,7 +219,7 @@ void check_cell(const TomlReader& t, const Scene& scene) {
     if (t.has(key)) throw t.error(key, "needs a periodic cell", "set boundary.type = \"periodic\"");
   const auto until = t.table("until", Need::required);
   for (const char* key : {"axial_strain", "shear_strain"})
-    if (until->has(key)) throw until->error(key, "needs a periodic cell", "use time or steps");
+    if (until->has(key)) throw until->error(key, "needs a periodic cell", "use time, steps or displacement");
 }
 
 }  // namespace
@@ -234,6 +239,7 @@ StageSpec read_stage(const TomlReader& t, const Scene& scene) {
   if (rate) read_components(*rate, Kind::rate, any_number, drivers), read_inertial(*rate, drivers), rate->finish();
   if (hold) read_hold(*hold, drivers);
   if (const auto cycle = t.table("cycle")) stage.cycle = read_cycle(*cycle, drivers);
+  read_bodies(t, scene, stage);
   read_until(*t.table("until", Need::required), stage);
   if (const auto record = t.table("record")) read_record(*record, stage);
   t.finish();

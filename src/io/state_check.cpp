@@ -123,6 +123,12 @@ void check_state(const Scene& scene, const State& state, const std::string& file
   check_contacts(check, state.contacts, state.grains.size());
   check_list(check, state.list, state.grains.size());
   check_plan(check, state);
+  check.length("bodies", state.bodies.size(), scene.boundary.bodies.size());
+  check.below("walls/shape", state.walls, 5, [](const Wall& w) { return w.shape; });
+  check.below("walls/body", state.walls, state.bodies.size(), [](const Wall& w) { return w.body; });
+  check.below("walls/spoke", state.walls, state.spokes.size() + 1, [](const Wall& w) { return w.spoke + w.spokes; });
+  check.below("glued/grain", state.glued, state.grains.size(), [](const auto& g) { return g.grain; });
+  check.below("glued/body", state.glued, state.bodies.size(), [](const auto& g) { return g.body; });
   check.below("walls/material", state.walls, scene.materials.size(), [](const Wall& w) { return w.material; });
   check.below("wall_contacts/grain", state.wall_contacts, state.grains.size(), [](const auto& c) { return c.grain; });
   check.below("wall_contacts/wall", state.wall_contacts, state.walls.size(), [](const auto& c) { return c.wall; });

@@ -198,6 +198,21 @@ bool TomlReader::numbers(std::string_view key, std::span<double> out, const Rang
   return true;
 }
 
+bool TomlReader::vector(std::string_view key, int dimension, Vec3& out, Need need) const {
+  std::array<double, 3> x{};
+  if (!numbers(key, std::span(x).first(static_cast<std::size_t>(dimension)), any_number, need)) return false;
+  out = {x[0], x[1], x[2]};
+  return true;
+}
+
+bool TomlReader::direction(std::string_view key, int dimension, Vec3& out, Need need) const {
+  if (!vector(key, dimension, out, need)) return false;
+  const double length = norm(out);
+  if (!(length > 0) || !std::isfinite(length)) throw error(key, "must have a length above 0");
+  out *= 1 / length;
+  return true;
+}
+
 bool TomlReader::pairs(std::string_view key, std::vector<std::array<double, 2>>& out) const {
   const toml::array* rows = array(key, Need::optional);
   if (!rows) return false;

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/vec.hpp"
 
 namespace eg {
 
@@ -80,6 +81,10 @@ class TomlReader {
   }
   /// An array of exactly out.size() numbers.
   bool numbers(std::string_view key, std::span<double> out, const Range& = any_number, Need = Need::optional) const;
+  /// A vector of the scene's dimension; the third component of a 2D one is 0.
+  bool vector(std::string_view key, int dimension, Vec3& out, Need = Need::optional) const;
+  /// The same, made a unit vector; one without length throws.
+  bool direction(std::string_view key, int dimension, Vec3& out, Need = Need::optional) const;
   /// An array of arrays of two numbers.
   bool pairs(std::string_view key, std::vector<std::array<double, 2>>& out) const;
   /// An array of texts out of `names`.

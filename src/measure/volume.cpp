@@ -37,6 +37,7 @@ double lens_volume(int dimension, double ri, double rj, double distance) {
 Range wall_gap(const State& state, int k) {
   Range gap;
   for (const Wall& wall : state.walls) {
+    if (wall.shape != Wall::plane) continue;
     if (wall.normal[k] == 1) gap.low = std::max(gap.low, wall.point[k]);
     if (wall.normal[k] == -1) gap.high = std::min(gap.high, wall.point[k]);
   }
@@ -47,6 +48,10 @@ double specimen_volume(const State& state) {
   Mat3 edges = state.cell.h;
   for (int k = 0; k < state.dimension; ++k)
     if (const double gap = wall_gap(state, k).length(); std::isfinite(gap)) edges(k, k) = gap;
+  for (const Wall& wall : state.walls)
+    if (wall.shape == Wall::cylinder && wall.hollow)
+      for (int k = 0; k < 3; ++k)
+        if (std::abs(wall.normal[k]) == 1) return std::numbers::pi * wall.radius * wall.radius * edges(k, k);
   return edges(0, 0) * edges(1, 1) * edges(2, 2);
 }
 

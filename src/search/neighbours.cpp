@@ -5,6 +5,7 @@
 
 #include "search/grid.hpp"
 #include "search/spatial_sort.hpp"
+#include "search/wall_contacts.hpp"
 
 namespace eg {
 namespace {
@@ -85,29 +86,6 @@ struct Row {
   std::size_t old;
 };
 
-void refresh_walls(State& state) {
-  std::vector<WallContact> fresh;
-  for (Index w = 0; w < state.walls.size(); ++w) {
-    Wall& wall = state.walls[w];
-    wall.moved = 0;
-    for (Index g = 0; g < state.grains.size(); ++g) {
-      const Quad& p = state.grains.position[g];
-      if (dot(p.vec() - wall.point, wall.normal) - p.w < state.list.contact_skin) fresh.push_back({g, w, {}});
-    }
-  }
-  const auto less = [](const WallContact& a, const WallContact& b) {
-    return a.wall != b.wall ? a.wall < b.wall : a.grain < b.grain;
-  };
-  auto& old = state.wall_contacts;
-  if (!std::is_sorted(old.begin(), old.end(), less)) std::sort(old.begin(), old.end(), less);
-  auto o = old.begin();
-  for (auto& f : fresh) {
-    while (o != old.end() && less(*o, f)) ++o;
-    if (o != old.end() && !less(f, *o)) f.history = o->history;
-  }
-  old = std::move(fresh);
-}
-
 }  // namespace
 
 void refresh_contacts(State& state) {
@@ -172,7 +150,7 @@ void refresh_contacts(State& state) {
   for (std::size_t i = 0; i < n; ++i) state.list.reference[i] = state.grains.position[i].vec();
   state.list.reference_cell = state.cell.h;
   ++state.list.refreshes;
-  refresh_walls(state);
+  refresh_wall_contacts(state);
 }
 
 void rebuild_neighbours(State& state, double skin, double contact_skin) {

@@ -60,6 +60,8 @@ void sort_grains(State& state) {
         c.history_at(k, h) = -c.history_at(k, h);
   }
   for (auto& w : state.wall_contacts) w.grain = rank[w.grain];
+  for (auto& g : state.glued) g.grain = rank[g.grain];
+  std::ranges::sort(state.glued, {}, &GluedGrain::grain);
 }
 
 }  // namespace eg

@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "contact/laws.hpp"
 #include "specimen/lattice.hpp"
+#include "specimen/make_walls.hpp"
 
 namespace eg {
 
@@ -42,38 +43,6 @@ void check_inside(const Scene& scene, const Packing& packing) {
         throw input_error(scene.file, 0, fmt::format("grain {}", i + 1),
                           fmt::format("has {} = {:g} m, outside the box [0, {:g}]", "xyz"[k], x, packing.box[k]),
                           "take boundary type \"periodic\" or \"free\", or move the grain");
-}
-
-std::uint16_t material_index(const Scene& scene, const std::string& name) {
-  const auto found =
-      std::find_if(scene.materials.begin(), scene.materials.end(), [&](const Material& m) { return m.name == name; });
-  if (found == scene.materials.end())
-    throw input_error(scene.file, 0, fmt::format("wall material \"{}\"", name), "is not a material of the scene",
-                      fmt::format("add [material.{}]", name));
-  return static_cast<std::uint16_t>(found - scene.materials.begin());
-}
-
-std::vector<Wall> make_walls(const Scene& scene, const Packing& packing) {
-  std::vector<Wall> walls;
-  if (scene.boundary.kind == BoundarySpec::Kind::box) {
-    const auto material = material_index(scene, scene.boundary.wall_material);
-    for (int k = 0; k < packing.dimension; ++k) {
-      Wall lower, upper;
-      lower.material = upper.material = material;
-      lower.normal[k] = 1, upper.normal[k] = -1;
-      upper.point[k] = packing.box[k];
-      walls.push_back(lower), walls.push_back(upper);
-    }
-  }
-  for (const auto& spec : scene.boundary.walls) {
-    Wall wall;
-    wall.point = spec.point;
-    wall.normal = (1 / norm(spec.normal)) * spec.normal;
-    wall.velocity = spec.velocity;
-    wall.material = material_index(scene, spec.material);
-    walls.push_back(wall);
-  }
-  return walls;
 }
 
 Cell make_cell(const Scene& scene, const Packing& packing) {
@@ -140,7 +109,7 @@ State make_state(const Scene& scene, const Packing& packing) {
   state.cell = make_cell(scene, packing);
   state.grains = make_grains(scene, packing, state.cell);
   fit_rotation(scene, state);
-  state.walls = make_walls(scene, packing);
+  make_walls(scene, packing.box, state);
   for (const auto& material : scene.materials) state.friction.push_back(material.friction);
   return state;
 }

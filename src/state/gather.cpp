@@ -3,9 +3,14 @@
 #include <cmath>
 
 #include "contact/laws.hpp"
+#include "state/wall_geometry.hpp"
 
 namespace eg {
 namespace {
+
+/// A body of mass m ≥ ¾ K Δt², or a servo that takes no more than ⅔ of the way at once, adds no more to λmax than half the
+/// stiffness of its contacts again (docs/walls.md).
+constexpr double yielding = 1.5;
 
 template <class Law>
 class Gatherer {
@@ -18,6 +23,8 @@ class Gatherer {
         if (!state.friction.empty()) ma.friction = state.friction[a], mb.friction = state.friction[b];
         constants_.push_back(Law::constants(ma, mb, scene.dimension));
       }
+    if (!state.glued.empty()) glued_to_.assign(state.grains.size(), no_index);
+    for (const auto& g : state.glued) glued_to_[g.grain] = g.body;
   }
 
   void pair(std::size_t c, const std::function<void(const ContactPoint&)>& visit, const OverlapGrowth& growth) const {
@@ -25,6 +32,7 @@ class Gatherer {
     const auto& g = state_.grains;
     if (list.is_padding(c)) return;
     ContactPoint p;
+    if (!glued_to_.empty() && (glued_gives(list.i[c]) || glued_gives(list.j[c]))) p.give = yielding;
     p.i = list.i[c], p.j = list.j[c], p.entry = c;
     p.branch = g.position[p.j].vec() + state_.cell.shift(list.image_of(c)) - g.position[p.i].vec();
     p.geometry = grain_grain(p.branch, g.radius(p.i), g.radius(p.i) + g.radius(p.j), arms_);
@@ -40,9 +48,10 @@ class Gatherer {
     const Wall& wall = state_.walls[contact.wall];
     ContactPoint p;
     p.i = contact.grain, p.j = no_index, p.wall = contact.wall, p.entry = c;
-    const double height = dot(g.position[p.i].vec() - wall.point, wall.normal), radius = g.radius(p.i);
-    p.branch = wall.normal * -height;
-    p.geometry = grain_plane(height, wall.normal, radius, arms_);
+    const double radius = g.radius(p.i);
+    p.geometry = grain_wall(state_, wall, g.position[p.i].vec(), radius, arms_);
+    p.branch = p.geometry.n * (radius - p.geometry.overlap);
+    if (state_.bodies[wall.body].yields) p.give = yielding;
     if (state_.contacts.history_vectors > 0) p.shear = {contact.history[0], contact.history[1], contact.history[2]};
     respond(p, Law::template pair<double>(constants_[g.material_of(p.i) * kinds_ + wall.material], wall_sizes(radius)),
             visit, growth);
@@ -76,7 +85,12 @@ class Gatherer {
     return reach;
   }
 
+  bool glued_gives(Index grain) const {
+    return glued_to_[grain] != no_index && state_.bodies[glued_to_[grain]].yields;
+  }
+
   const State& state_;
+  std::vector<Index> glued_to_;  ///< body of every grain; empty when nothing is glued
   std::size_t kinds_;
   Arms arms_;
   std::vector<typename Law::template Constants<double>> constants_;

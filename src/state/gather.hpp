@@ -21,6 +21,7 @@ struct ContactPoint {
   NormalResponse<double> normal;  ///< N, kn, kt
   Vec3 shear;                     ///< T [N], acts on i as +T; force on j is N n − T
   double limit = 0;               ///< µN [N]
+  double give = 1;                ///< by how much stiffer it counts in a bound of the step, its body answering forces
   double normal_energy = 0;       ///< [J]
 
   Vec3 force() const { return geometry.n * normal.force - shear; }  ///< on j [N]

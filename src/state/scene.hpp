@@ -47,11 +47,40 @@ struct SpecimenSpec {
   std::string path;  ///< packing text, or snapshot (.h5), relative to the scene file
 };
 
+/// [[boundary.wall]], one surface.
 struct WallSpec {
+  enum class Shape { plane, cylinder };
   std::string name;
-  Vec3 point, normal;    ///< [m], [-]; grains lie on the side the normal points to
-  Vec3 velocity;         ///< [m/s]
+  Shape shape = Shape::plane;
+  Vec3 point, normal;           ///< [m]; plane: unit, grains lie on this side; cylinder: unit, along its axis
+  double radius = not_given;    ///< cylinder [m]
+  bool hollow = true;           ///< cylinder: grains are inside
+  std::array<double, 2> share;  ///< cylinder: height [m] (NaN: between planes across its axis) and angle [rad] of the
+                                ///< part that grains press on, for stresses
+  Vec3 along;                   ///< unit; only grains whose centre has low ≤ (x − point)·along < high feel the wall
+  std::array<double, 2> window{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   std::string material;  ///< a name of [material.*]
+  std::size_t body = 0;  ///< of BoundarySpec::bodies
+};
+
+/// [[boundary.mesh]], triangles from an STL file.
+struct MeshSpec {
+  std::string path;      ///< as written in the scene; relative to the scene file
+  double scale = 1;      ///< metres in a unit of the file
+  Vec3 offset;           ///< [m], added after scaling
+  bool hollow = false;   ///< grains are on the inner side of facets that turn counter-clockwise seen from outside
+  bool open = false;     ///< edges may have one facet only
+  std::string material;  ///< a name of [material.*]
+  std::size_t body = 0;
+  std::vector<std::array<Vec3, 3>> facets;  ///< corners [m], scaled and shifted; read with the scene file
+};
+
+/// A part of the apparatus that walls and meshes belong to.
+struct BodySpec {
+  std::string name, group;  ///< group: the stack of rings it is of, or empty
+  Vec3 velocity;            ///< [m/s], in stages that do not drive it
+  double mass = not_given;  ///< [kg] of a body that moves freely; default: its share of the grains
+  double area = not_given;  ///< on which it loads grains [m²] (2D: m); default: worked out from the walls
 };
 
 /// [boundary]
@@ -59,7 +88,9 @@ struct BoundarySpec {
   enum class Kind { periodic, free, box };
   Kind kind = Kind::periodic;   ///< box: the six (2D: four) planes of the specimen's box become walls
   std::string wall_material;    ///< box only
-  std::vector<WallSpec> walls;  ///< further planes, [[boundary.wall]]
+  std::vector<BodySpec> bodies; ///< box: x_low, x_high, y_low, … first
+  std::vector<WallSpec> walls;  ///< further walls: [[boundary.wall]], [[boundary.rings]]
+  std::vector<MeshSpec> meshes;
 };
 
 /// [damping]
@@ -106,6 +137,20 @@ struct CycleSpec {
   double largest_strain = std::numeric_limits<double>::infinity();  ///< of any component: the stage ends there [-]
 };
 
+/// [stage.body.NAME]: how a body moves during a stage. Bodies without an entry move with BodySpec::velocity.
+struct BodyDrive {
+  enum class Servo { none, force, stress };
+  std::size_t body = 0;
+  Vec3 velocity;       ///< [m/s]
+  double opening = 0;  ///< rate at which the radius of its cylinders grows [m/s]
+  Servo servo = Servo::none;
+  double target = 0;             ///< [N], or [Pa] (2D: N/m) on the loaded area; of the grains on the body, along `along`
+  Vec3 along;                    ///< unit, out of the specimen; not read when radial
+  bool radial = false;           ///< the radius answers
+  double max_speed = not_given;  ///< of the servo [m/s]; default: so that the inertial number stays below 2.5e-3
+  std::array<bool, 3> free{};    ///< axes along which the forces of the grains accelerate it
+};
+
 /// [[stage]]
 struct StageSpec {
   std::string name;
@@ -115,6 +160,8 @@ struct StageSpec {
   std::array<ComponentControl, 6> control{};
   std::vector<CellCondition> hold;  ///< as many as components are free
   std::optional<CycleSpec> cycle;
+  std::vector<BodyDrive> bodies;
+  std::vector<std::size_t> glue;  ///< bodies to which the grains that touch them are glued as the stage begins
   double max_strain_rate =
       not_given;  ///< cap of what answers stresses [1/s]; default: 10, or ten times the rates driven
   // until (all that are given must hold; time/steps/strain end the stage by themselves)
@@ -125,10 +172,12 @@ struct StageSpec {
   double until_axial_strain = not_given;  ///< |εz| (2D: |εy|) since the stage began [-]
   double until_shear_strain = not_given;  ///< largest |γ| since the stage began [-]
   double until_cycles = not_given;
+  double until_displacement = not_given;  ///< largest way of a body (or growth of a radius) since the stage began [m]
   double max_steps = 5e6;  ///< a stage that has not ended by then stops the run with an error
   // record
   double record_every_steps = not_given;  ///< default: 1000, unless by strain
   double record_every_strain = not_given;
+  double record_every_displacement = not_given;  ///< [m]
   double snapshot_every_steps = not_given;
 };
 

@@ -8,6 +8,7 @@
 #include "base/vec.hpp"
 #include "state/cell.hpp"
 #include "state/list.hpp"
+#include "state/wall.hpp"
 
 namespace eg {
 
@@ -52,26 +53,12 @@ struct Contacts {
   }
 };
 
-/// A plane that grains cannot cross; they lie on the side of its normal.
-struct Wall {
-  Vec3 point, normal;  ///< [m], unit
-  Vec3 velocity;       ///< [m/s]
-  std::uint16_t material = 0;
-  Vec3 force;        ///< force of the grains on the wall in the last step [N]
-  double moved = 0;  ///< path along the normal since contacts were last refreshed [m]
-};
-
-struct WallContact {
-  Index grain = 0, wall = 0;
-  std::array<double, 8> history{};  ///< as Contacts::history, seen from the grain as i and the wall as j
-};
-
 /// Work and dissipation so far [J] (2D: per metre of thickness). Kept only when Scene::energy.
 struct EnergyLedger {
   double shear_work = 0;  ///< work put into tangential springs and sliders (elastic + friction + path dependence)
   double friction = 0;    ///< dissipated by sliding
   double local_damping = 0, mass_damping = 0, viscous_damping = 0;  ///< dissipated
-  double boundary = 0;  ///< work done on the grains by the cell and the walls
+  double boundary = 0;  ///< work done on the grains, and on bodies that move freely, by the cell and the walls
   double body = 0;      ///< work done by gravity
 };
 
@@ -117,8 +104,11 @@ struct State {
   Grains grains;
   Contacts contacts;
   NeighbourList list;
+  std::vector<Body> bodies;
   std::vector<Wall> walls;
+  std::vector<Vec3> spokes;  ///< unit vectors along the edges that meet in tips, tip after tip
   std::vector<WallContact> wall_contacts;
+  std::vector<GluedGrain> glued;  ///< by grain
   Mat3 virial;               ///< Σ f ⊗ branch over contacts of the last step, f on j [J]; stress is virial/volume
   double stiffness_sum = 0;  ///< Σ kn d² over contacts of the last step [J]
   EnergyLedger ledger;

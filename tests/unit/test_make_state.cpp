@@ -122,7 +122,7 @@ TEST(MakeState, BoxBecomesWalls) {
     }
     EXPECT_EQ(state.walls.back().material, 0);
     EXPECT_EQ(state.walls.back().normal.y, -1);
-    EXPECT_EQ(state.walls.back().velocity.y, -0.1);
+    EXPECT_EQ(scene.boundary.bodies.back().velocity.y, -0.1);
   }
 }
 

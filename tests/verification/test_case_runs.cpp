@@ -102,7 +102,7 @@ TEST(Case, SettlingBox) {
   const auto state = eg::read_snapshot(run.file("final.h5")).state;
   double weight = 0, carried = 0;
   for (const auto& v : state.grains.velocity) weight += 9.81 / v.w;
-  for (const auto& w : state.walls) carried -= w.force.z;
+  for (const auto& b : state.bodies) carried -= b.force.z;
   EXPECT_NEAR(carried / weight, 1, 5e-3);  // floor and side walls
 }
 

@@ -206,12 +206,12 @@ TEST(Wall, GrainRestsUnderGravity) {
   p.position = {{0, 0, 1e-3}};
   p.radius = {1e-3};
   State state = make_state(scene, p);
-  state.walls.push_back({.point = {}, .normal = {0, 0, 1}, .velocity = {}, .material = 0, .force = {}, .moved = 0});
+  test::add_plane(state, {}, {0, 0, 1});
   Engine engine(scene, state);
   engine.kick(1e-6);
   for (int k = 0; k < 100000; ++k) engine.step(1e-6);
   const double weight = 9.81 / state.grains.velocity[0].w;
-  EXPECT_NEAR(state.walls[0].force.z, -weight, 1e-9 * weight);
+  EXPECT_NEAR(state.bodies[0].force.z, -weight, 1e-9 * weight);
   EXPECT_NEAR(state.grains.position[0].z, 1e-3 - weight / 1e6, 1e-15);
   // all of the potential energy went into the dashpot and the spring
   // (the weight sets in at once, which the trapezoidal rule sees as half a step)

@@ -52,8 +52,7 @@ Eigen::MatrixXd dense(const std::vector<TangentBlock>& blocks, std::size_t grain
 State loaded(const Scene& scene, double mobilised, std::uint64_t seed) {
   State state = test::cluster(scene, 12, seed);
   if (seed % 2 == 0)  // with a wall through it
-    state.walls.push_back(
-        {.point = {0.3e-3, 0, 0}, .normal = {1, 0, 0}, .velocity = {}, .material = 0, .force = {}, .moved = 0});
+    test::add_plane(state, {0.3e-3, 0, 0}, {1, 0, 0});
   { Engine engine(scene, state); }
   Random random(seed);
   const auto shear = [&](const ContactPoint& p) {

@@ -1,0 +1,195 @@
+#include "boundary/body_control.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/error.hpp"
+#include "measure/volume.hpp"
+#include "state/wall_geometry.hpp"
+
+namespace eg {
+namespace {
+
+constexpr double gain = 0.5;            // α; the proof needs α ≤ 2/3, the rest is room for K to grow within a step
+constexpr double slow_enough = 2.5e-3;  // inertial number below which straining is quasi-static
+
+using Servo = BodyDrive::Servo;
+
+int main_axis(const Vec3& v) {
+  for (int k = 0; k < 3; ++k)
+    if (std::abs(v[k]) > 1 - 1e-9) return k;
+  return -1;
+}
+
+/// Distance between the planes across axis k; NaN where there are none.
+double span(const State& state, int k) {
+  const double gap = wall_gap(state, k).length();
+  return std::isfinite(gap) ? gap : not_given;
+}
+
+const WallSpec* cylinder_of(const BoundarySpec& b, std::size_t body) {
+  for (const auto& wall : b.walls)
+    if (wall.body == body && wall.shape == WallSpec::Shape::cylinder) return &wall;
+  return nullptr;
+}
+
+const Wall* wall_of(const State& state, std::size_t body, std::uint8_t shape) {
+  for (const auto& wall : state.walls)
+    if (wall.body == body && wall.shape == shape) return &wall;
+  return nullptr;
+}
+
+/// Of a body's cylinder, as far as grains press on it.
+double round_area(const Scene& scene, const State& state, std::size_t body) {
+  const WallSpec& spec = *cylinder_of(scene.boundary, body);
+  const int axis = main_axis(spec.normal);
+  const double height = std::isnan(spec.share[0]) && axis >= 0 ? span(state, axis) : spec.share[0];
+  return spec.share[1] * wall_of(state, body, Wall::cylinder)->radius * height;
+}
+
+/// Across `along`: of a ring between a hollow cylinder with that axis and a solid one, else of the box between planes.
+double flat_area(const Scene& scene, const State& state, const Vec3& along) {
+  double outer = 0, inner = 0, angle = 0;
+  for (const Wall& wall : state.walls)
+    if (wall.shape == Wall::cylinder && std::abs(dot(wall.normal, along)) > 1 - 1e-9) {
+      double& radius = wall.hollow ? outer : inner;
+      radius = std::max(radius, wall.radius);
+      if (wall.hollow) angle = cylinder_of(scene.boundary, wall.body)->share[1];
+    }
+  if (outer > 0) return 0.5 * angle * (outer * outer - inner * inner);
+  const int axis = main_axis(along);
+  if (axis < 0) return not_given;
+  double area = 1;
+  for (int k = 0; k < state.dimension; ++k)
+    if (k != axis) area *= span(state, k);
+  return area;
+}
+
+double target_force(const Scene& scene, const State& state, const BodyDrive& drive) {
+  return drive.servo == Servo::force ? drive.target : drive.target * body_load(scene, state, drive).area;
+}
+
+/// Speed at which the specimen strains with the inertial number of slow tests.
+double default_speed(const Scene& scene, const State& state, const BodyDrive& drive) {
+  double length = 0;
+  for (int k = 0; k < state.dimension; ++k) length = std::max(length, state.cell.h(k, k));
+  const double area = body_load(scene, state, drive).area;
+  const double target = drive.servo == Servo::stress || std::isnan(area) ? drive.target : drive.target / area;
+  return slow_enough * length / size_statistics(state).d50 *
+         std::sqrt(std::max(target, 1.0) / scene.materials.front().density);
+}
+
+}  // namespace
+
+BodyDrive drive_of(const Scene& scene, const State& state, std::size_t body) {
+  if (state.stage < scene.stages.size())
+    for (const auto& drive : scene.stages[state.stage].bodies)
+      if (drive.body == body) return drive;
+  BodyDrive at_rest;
+  at_rest.body = body;
+  at_rest.velocity = scene.boundary.bodies[body].velocity;
+  return at_rest;
+}
+
+BodyLoad body_load(const Scene& scene, const State& state, const BodyDrive& drive) {
+  const Body& body = state.bodies[drive.body];
+  const Wall* plane = wall_of(state, drive.body, Wall::plane);
+  const Wall* cylinder = wall_of(state, drive.body, Wall::cylinder);
+  BodyLoad load;
+  const bool radial = drive.radial || (drive.servo == Servo::none && !plane && cylinder);
+  if (radial) {
+    load.force = cylinder->hollow ? body.spread : -body.spread;
+    load.area = round_area(scene, state, drive.body);
+  } else if (drive.servo != Servo::none || plane) {
+    const Vec3 along = drive.servo != Servo::none ? drive.along : -plane->normal;
+    load.force = dot(body.force, along);
+    load.area = flat_area(scene, state, along);
+  }
+  if (const double given = scene.boundary.bodies[drive.body].area; !std::isnan(given)) load.area = given;
+  return load;
+}
+
+BodyControl::BodyControl(const Scene& scene, const State& state) : scene_(scene) {
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    BodyDrive drive = drive_of(scene, state, b);
+    if (drive.servo == Servo::stress && !(body_load(scene, state, drive).area > 0))
+      throw input_error(scene.file, 0, fmt::format("stage.body.{}.stress", scene.boundary.bodies[b].name),
+                        "needs the area that it acts on, which the walls do not tell",
+                        fmt::format("give [boundary.body.{}] area, or aim at a force", scene.boundary.bodies[b].name));
+    if (drive.servo != Servo::none && std::isnan(drive.max_speed)) drive.max_speed = default_speed(scene, state, drive);
+    drives_.push_back(drive);
+  }
+}
+
+void BodyControl::drive(State& state, double dt) const {
+  for (const auto& d : drives_) {
+    Body& body = state.bodies[d.body];
+    for (int k = 0; k < 3; ++k)
+      if (!d.free[static_cast<std::size_t>(k)]) body.velocity[k] = d.velocity[k];
+    body.opening = d.opening;
+    if (d.servo == Servo::none) continue;
+    const double excess = body_load(scene_, state, d).force - target_force(scene_, state, d);
+    const double wanted = body.stiffness > 0 ? gain * excess / (body.stiffness * dt) : excess < 0 ? -d.max_speed : 0.0;
+    const double speed = std::clamp(wanted, -d.max_speed, d.max_speed);  // outward
+    if (d.radial)
+      body.opening = wall_of(state, d.body, Wall::cylinder)->hollow ? speed : -speed;
+    else
+      body.velocity += speed * d.along;
+  }
+}
+
+void begin_body_stage(const Scene& scene, State& state) {
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    Body& body = state.bodies[b];
+    const BodyDrive drive = drive_of(scene, state, b);
+    body.moved = {}, body.opened = 0;
+    for (int k = 0; k < 3; ++k)
+      if (!drive.free[static_cast<std::size_t>(k)]) body.velocity[k] = drive.velocity[k];
+    body.free = drive.free;
+    body.yields = drive.servo != Servo::none || drive.free != std::array<bool, 3>{};
+  }
+}
+
+void glue_grains(State& state, const std::vector<std::size_t>& glue) {
+  for (const auto& contact : state.wall_contacts) {
+    const Wall& wall = state.walls[contact.wall];
+    Quad& v = state.grains.velocity[contact.grain];
+    const Quad& p = state.grains.position[contact.grain];
+    if (v.w == 0 || std::ranges::find(glue, wall.body) == glue.end()) continue;
+    if (!(grain_wall(state, wall, p.vec(), p.w, Arms::middle).overlap > 0)) continue;
+    v.w = 0;
+    if (state.grains.rotates()) state.grains.spin[contact.grain] = Quad{};
+    state.glued.push_back({contact.grain, wall.body});
+  }
+  std::ranges::sort(state.glued, {}, &GluedGrain::grain);
+}
+
+double body_step_limit(const State& state) {
+  double limit = std::numeric_limits<double>::infinity();
+  for (const auto& body : state.bodies)
+    if (body.free != std::array<bool, 3>{} && body.stiffness > 0)
+      limit = std::min(limit, std::sqrt(body.mass / body.stiffness));
+  return limit;
+}
+
+double servo_error(const Scene& scene, const State& state) {
+  double worst = 0;
+  for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+    const BodyDrive drive = drive_of(scene, state, b);
+    if (drive.servo == Servo::none) continue;
+    const double target = target_force(scene, state, drive), force = body_load(scene, state, drive).force;
+    worst = std::max(worst, std::abs(force - target) / std::max(std::abs(target), 1e-300));
+  }
+  return worst;
+}
+
+double largest_displacement(const State& state) {
+  double most = 0;
+  for (const auto& body : state.bodies) most = std::max({most, norm(body.moved), std::abs(body.opened)});
+  return most;
+}
+
+}  // namespace eg
