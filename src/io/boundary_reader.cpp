@@ -238,8 +238,7 @@ void read_boundary(const TomlReader& t, Scene& scene) {
   t.choice<Kind>("type", b.kind, {{"periodic", Kind::periodic}, {"free", Kind::free}, {"box", Kind::box}}, required);
   if (b.kind == Kind::box) {
     b.wall_material = read_material_name(t, scene, "wall_material");
-    for (int k = 0; k < scene.dimension; ++k)
-      for (const char* side : {"low", "high"}) body_named(b, fmt::format("{}_{}", "xyz"[k], side));
+    b.bodies = box_bodies(scene.dimension);
   } else if (t.has("wall_material")) {
     throw t.error("wall_material", "is read with type = \"box\" only", "remove one of the two");
   }

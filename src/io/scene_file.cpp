@@ -9,6 +9,7 @@
 #include "contact/laws.hpp"
 #include "io/boundary_reader.hpp"
 #include "io/scene_settings.hpp"
+#include "io/stl.hpp"
 #include "io/stage_reader.hpp"
 #include "io/text_file.hpp"
 #include "io/toml_parse.hpp"
@@ -275,7 +276,10 @@ Scene parse_scene(std::string_view text, const std::string& file, const SceneSet
 }
 
 Scene read_scene(const std::string& path, const SceneSettings& settings) {
-  return parse_scene(read_file(path), path, settings);
+  Scene scene = parse_scene(read_file(path), path, settings);
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  for (auto& mesh : scene.boundary.meshes) read_mesh_file(mesh, folder);
+  return scene;
 }
 
 std::string resolve_path(const Scene& scene, const std::string& path) {

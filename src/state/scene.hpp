@@ -83,6 +83,9 @@ struct BodySpec {
   double area = not_given;  ///< on which it loads grains [m²] (2D: m); default: worked out from the walls
 };
 
+/// Bodies of the planes of a box: x_low, x_high, y_low, …
+std::vector<BodySpec> box_bodies(int dimension);
+
 /// [boundary]
 struct BoundarySpec {
   enum class Kind { periodic, free, box };

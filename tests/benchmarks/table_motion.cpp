@@ -42,6 +42,7 @@ void settling() {
   scene.gravity = {0, 0, -9.81};
   scene.materials.front().name = scene.boundary.wall_material = "quartz";
   scene.boundary.kind = BoundarySpec::Kind::box;
+  scene.boundary.bodies = box_bodies(scene.dimension);
   scene.damping.normal_ratio = 0.2;
   Random random(1);
   State state = make_state(scene, make_cloud(test::radii_of("uniform", 10000, random), {3, 0.4}, random));

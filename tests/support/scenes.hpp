@@ -55,4 +55,12 @@ inline State cluster(const Scene& scene, std::size_t count, std::uint64_t seed, 
   return make_state(free, p);
 }
 
+/// A plane at rest, a body of its own.
+inline void add_plane(State& state, const Vec3& point, const Vec3& normal) {
+  Wall wall;
+  wall.point = point, wall.normal = normal, wall.body = static_cast<Index>(state.bodies.size());
+  state.bodies.emplace_back();
+  state.walls.push_back(wall);
+}
+
 }  // namespace eg::test

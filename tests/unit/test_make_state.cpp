@@ -108,7 +108,10 @@ TEST(MakeState, BoxBecomesWalls) {
     scene.boundary.kind = BoundarySpec::Kind::box;
     scene.boundary.wall_material = "steel";
     WallSpec lid;
-    lid.point = {0, 0.5, 0}, lid.normal = {0, -2, 0}, lid.velocity = {0, -0.1, 0}, lid.material = "quartz";
+    lid.point = {0, dimension == 3 ? 0.5 : 1.0, 0}, lid.normal = {0, -2, 0}, lid.material = "quartz";
+    scene.boundary.bodies = box_bodies(dimension);
+    lid.body = scene.boundary.bodies.size();
+    scene.boundary.bodies.push_back({.name = "lid", .group = "", .velocity = {0, -0.1, 0}});
     scene.boundary.walls = {lid};
     const State state = state_of(scene);
     EXPECT_FALSE(state.cell.any_periodic());
@@ -122,7 +125,7 @@ TEST(MakeState, BoxBecomesWalls) {
     }
     EXPECT_EQ(state.walls.back().material, 0);
     EXPECT_EQ(state.walls.back().normal.y, -1);
-    EXPECT_EQ(scene.boundary.bodies.back().velocity.y, -0.1);
+    EXPECT_EQ(state.bodies.size(), scene.boundary.bodies.size());
   }
 }
 
@@ -189,6 +192,7 @@ TEST(MakeState, ErrorsNameTheRule) {
   wide.radius[0] = 0;
   EXPECT_NE(error_of(scene, wide).find("radius 0 m"), std::string::npos);
 
+  scene.boundary.bodies = box_bodies(scene.dimension);
   scene.boundary.kind = BoundarySpec::Kind::box;
   scene.boundary.wall_material = "stel";
   EXPECT_EQ(error_of(scene, packing),

@@ -204,6 +204,7 @@ TEST(Probing, LinearDisks) { expect_probed(prepared("disks_biaxial", "300", 1));
 TEST(Platens, SimpleCubicBetweenPlates) {
   Scene scene = test::lattice_scene("linear", "sc", {3, 3, 3}, 0);
   scene.boundary.kind = BoundarySpec::Kind::box, scene.boundary.wall_material = "grain";
+  scene.boundary.bodies = box_bodies(scene.dimension);
   Packing packing = make_packing(scene);
   scene.materials[0].friction = 0;  // or side walls carry a part
   const double press = 1e-3;        // of the radius, at every wall and contact

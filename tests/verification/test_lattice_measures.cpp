@@ -87,6 +87,7 @@ TEST(LatticeMeasures, StressIsTheSlopeOfTheElasticEnergy) {  // p = −dW/dV
 TEST(LatticeMeasures, WallsCarryTheStress) {  // in equilibrium, traction on a face is the wall's force over its area
   Scene scene = lattice_scene("sc", "linear");
   scene.boundary.kind = BoundarySpec::Kind::box;
+  scene.boundary.bodies = box_bodies(scene.dimension);
   scene.boundary.wall_material = "grain";
   scene.specimen.overlap = 2e-3;
   State state = make_state(scene, make_packing(scene));
