@@ -238,10 +238,10 @@ const std::vector<SceneCase> scene_cases{
      "s.toml:20: stage[1].until.cycles = 3 needs a cycle to count; add cycle = { … } to the stage"},
     {20, "until = {}",
      "s.toml:20: stage[1].until names no condition; give at least one of stress_error, unbalanced_force, time, steps, "
-     "axial_strain, shear_strain, cycles"},
+     "axial_strain, shear_strain, displacement, cycles"},
     {19, "",
      "s.toml:20: stage[1].until.stress_error = 0.001 needs a stress that is aimed at; add stress or hold to the "
-     "stage"},
+     "stage, or a servo to a body"},
     {20, good_scene[19] + "\n[[stage]]\nname = \"compress\"\nuntil = { steps = 1 }",
      "s.toml:22: stage[2].name = \"compress\" is the name of another stage already; give every stage a name of its "
      "own"},

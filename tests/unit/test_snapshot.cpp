@@ -20,7 +20,7 @@ material.quartz = { density = 2650, friction = 0.5, shear_modulus = 29e9, poisso
 material.steel = { density = 7800, friction = 0.1, shear_modulus = 80e9, poisson = 0.3 }
 contact.law = "hertz-mindlin"
 specimen = { source = "cloud", count = 30, grading = "toyoura" }
-boundary.type = "periodic"
+boundary = { type = "box", wall_material = "steel" }
 )";
 
 /// Every number of the state from a random stream, within what a reader accepts.
@@ -79,7 +79,10 @@ eg::State scrambled_state() {
   s.list.j.resize(50);
   s.list.image.resize(50);
   s.list.reference.resize(30);
+  s.bodies.resize(6);
   s.walls.resize(2);
+  s.spokes.resize(2);
+  s.glued.resize(2);
   s.wall_contacts.resize(3);
   s.policy.bound.overlap.resize(19);
   s.policy.bound.weight.resize(19);
