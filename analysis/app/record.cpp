@@ -130,16 +130,18 @@ void add_body_columns(Columns& c, const Scene& scene) {
     }
     for (int k = 0; k < scene.dimension; ++k) {
       const std::string axis(1, "xyz"[k]);
-      c.push_back({{bodies[b].name + "_force_" + axis, "N"}, [b, k](const RowSource& r) { return r.state.bodies[b].force[k]; }});
-      c.push_back({{bodies[b].name + "_moved_" + axis, "m"}, [b, k](const RowSource& r) { return r.state.bodies[b].moved[k]; }});
+      c.push_back({{bodies[b].name + "_force_" + axis, "N"},
+                   [b, k](const RowSource& r) { return r.state.bodies[b].force[k]; }});
+      c.push_back({{bodies[b].name + "_moved_" + axis, "m"},
+                   [b, k](const RowSource& r) { return r.state.bodies[b].moved[k]; }});
     }
     c.push_back({{bodies[b].name + "_stress", pressure}, [b](const RowSource& r) {
                    return body_load(r.scene, r.state, drive_of(r.scene, r.state, b)).stress();
                  }});
-    const bool round = std::ranges::any_of(scene.boundary.walls, [b](const WallSpec& w) {
-      return w.body == b && w.shape == WallSpec::Shape::cylinder;
-    });
-    if (round) c.push_back({{bodies[b].name + "_opened", "m"}, [b](const RowSource& r) { return r.state.bodies[b].opened; }});
+    const bool round = std::ranges::any_of(
+        scene.boundary.walls, [b](const WallSpec& w) { return w.body == b && w.shape == WallSpec::Shape::cylinder; });
+    if (round)
+      c.push_back({{bodies[b].name + "_opened", "m"}, [b](const RowSource& r) { return r.state.bodies[b].opened; }});
   }
 }
 

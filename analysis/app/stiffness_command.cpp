@@ -11,6 +11,7 @@
 #include "assembly/linearise.hpp"
 #include "base/error.hpp"
 #include "base/progress.hpp"
+#include "measure/volume.hpp"
 #include "stiffness/backbone.hpp"
 #include "timestep/interval.hpp"
 

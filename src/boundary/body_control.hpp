@@ -11,7 +11,8 @@ namespace eg {
 /// F the force of the grains on it. docs/walls.md shows why the certified step stays safe beside it.
 class BodyControl {
  public:
-  /// For the stage that the state is in. Throws InputError when the loaded area of a servo cannot be told from the walls.
+  /// For the stage that the state is in. Throws InputError when the loaded area of a servo cannot be told from the
+  /// walls.
   BodyControl(const Scene& scene, const State& state);
 
   /// Velocities for the step to come, of length dt [s]. Bodies that are free are left to the integrator.

@@ -84,7 +84,7 @@ Components stress_components(const State& state) {
   Components s{};
   for (std::size_t k = 0; k < 6; ++k) {  // grains that turn faster and faster make it unsymmetric
     const auto [row, column] = places[k];
-    s[k] = -0.5 * sign_of(k) * (state.virial(row, column) + state.virial(column, row)) / state.cell.volume();
+    s[k] = -0.5 * sign_of(k) * (state.virial(row, column) + state.virial(column, row)) / specimen_volume(state);
   }
   return s;
 }

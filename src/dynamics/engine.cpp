@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "measure/volume.hpp"
 #include "search/neighbours.hpp"
 #include "state/gather.hpp"
 
@@ -67,8 +68,8 @@ void Engine::forces(double dt, TallyLevel tally, const AfterChunk& after) {
       for (std::size_t k = 0; k < work_.schedule.chunks(); ++k) after(k);
   }
   if (tally == TallyLevel::none) return;
-  const Mat3 virial = grains.virial;
   now += grains;
+  const Mat3 virial = now.virial;
   if (tally == TallyLevel::works) tally_ = now;
   state_.virial = virial;
   state_.stiffness_sum = now.stiffness_sum;
@@ -155,7 +156,7 @@ double Engine::unbalanced_ratio() const {
 
 Mat3 contact_stress(const State& state) {
   Mat3 s = state.virial;
-  return s *= 1 / state.cell.volume();
+  return s *= 1 / specimen_volume(state);
 }
 
 }  // namespace eg

@@ -256,8 +256,13 @@ Tally ForceLoopOf<Law, rotation>::walls(State& state, ForceWorkspace& work, doub
       body.magnitude += norm(f.on_j);
       body.stiffness += std::max(f.law.normal.stiffness, f.law.normal.tangential);
     }
-    if (options.tally != TallyLevel::works) continue;
+    if (options.tally == TallyLevel::none) continue;
     Sums<double> sums;
+    add_stress(sums, g.n * (p.w - g.overlap), f, g.overlap > 0);
+    if (options.tally != TallyLevel::works) {
+      tally += finish(sums);
+      continue;
+    }
     add_works(sums, inc, f, g.overlap > 0);
     if (options.viscous_history) sums.viscous = viscous_work<double>(c.history.data() + history.size(), 1, g, inc, f);
     tally += finish(sums);

@@ -80,7 +80,8 @@ double record_interval(const StageSpec& s) {
 TallyLevel tally_level(const State& state, const StageSpec& s) {
   if (state.stage_step % 10 == 0 || every(state, record_interval(s)) || every(state, s.until_steps))
     return TallyLevel::works;
-  return needs_stress(s) || given(s.record_every_strain) || given(s.record_every_displacement) ? TallyLevel::stress : TallyLevel::none;
+  return needs_stress(s) || given(s.record_every_strain) || given(s.record_every_displacement) ? TallyLevel::stress
+                                                                                               : TallyLevel::none;
 }
 
 /// The strain that rows by strain go by: axial, or the largest shear where that is more.
@@ -100,8 +101,7 @@ bool passes(double before, double now, double interval) {
 bool due(const State& state, const StageSpec& s, const Progress& before) {
   const Progress now = progress_of(state);
   return passes(before.strain, now.strain, s.record_every_strain) ||
-         passes(before.displacement, now.displacement, s.record_every_displacement) ||
-         every(state, record_interval(s));
+         passes(before.displacement, now.displacement, s.record_every_displacement) || every(state, record_interval(s));
 }
 
 /// The policy's step, but not beyond what bodies that move freely allow. A fixed step stays as it was ordered.
@@ -143,7 +143,8 @@ bool run_stages(const Scene& scene, State& state, StepPolicy& policy, const RunO
     const bool checked = level == TallyLevel::works;
     if (checked) state.unbalanced = engine.unbalanced_ratio(), state.kinetic = engine.kick_sums().kinetic;
 
-    const RunStatus status{stage, engine, state.unbalanced, std::max(stress_error(state, stage), servo_error(scene, state)), state.kinetic};
+    const RunStatus status{stage, engine, state.unbalanced,
+                           std::max(stress_error(state, stage), servo_error(scene, state)), state.kinetic};
     if (!std::isfinite(status.kinetic))
       throw RunError(fmt::format(
           "step {}: the motion is no longer finite; the step {:.3g} s was unstable: use policy = \"certified\"",

@@ -81,7 +81,8 @@ WallSpec read_wall(const TomlReader& t, const Scene& scene, BoundarySpec& b) {
   return wall;
 }
 
-/// A stack of rings: cylinders that share an axis, one upon the other, each a body NAME1, NAME2, … counted from `point`.
+/// A stack of rings: cylinders that share an axis, one upon the other, each a body NAME1, NAME2, … counted from
+/// `point`.
 void read_rings(const TomlReader& t, const Scene& scene, BoundarySpec& b) {
   if (scene.dimension != 3) throw t.error("", "is read in 3D only", "use walls with a window");
   std::string name;
@@ -212,8 +213,8 @@ BodyDrive read_drive(const TomlReader& t, const Scene& scene, std::size_t body) 
     throw t.error("opening", "needs a cylinder, whose radius grows at this rate [m/s]", "use velocity");
   read_servo(t, scene, drive);
   std::vector<std::string> axes;
-  if (t.choices("free", axes, scene.dimension == 3 ? std::vector<std::string>{"x", "y", "z"}
-                                                   : std::vector<std::string>{"x", "y"}))
+  if (t.choices("free", axes,
+                scene.dimension == 3 ? std::vector<std::string>{"x", "y", "z"} : std::vector<std::string>{"x", "y"}))
     for (const auto& axis : axes) drive.free[static_cast<std::size_t>(axis[0] - 'x')] = true;
   if (!axes.empty() && drive.servo != BodyDrive::Servo::none)
     throw t.error("free", "cannot stand beside a servo", "let the body go free, or aim at a force");

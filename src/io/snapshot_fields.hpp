@@ -76,56 +76,90 @@ template <class Archive, class B>
 void visit_bodies(Archive& a, B& bodies) {
   [[maybe_unused]] const auto [velocity, opening, force, spread, magnitude, stiffness, glued_stiffness, moved, opened,
                                mass, free, yields] = Body{};  // all its fields
-  a.column("bodies/velocity", "m/s", bodies, [](auto& b) -> auto& { return b.velocity; });
-  a.column("bodies/opening", "m/s", bodies, [](auto& b) -> auto& { return b.opening; });
-  a.column("bodies/force", "N", bodies, [](auto& b) -> auto& { return b.force; });
-  a.column("bodies/spread", "N", bodies, [](auto& b) -> auto& { return b.spread; });
-  a.column("bodies/magnitude", "N", bodies, [](auto& b) -> auto& { return b.magnitude; });
-  a.column("bodies/stiffness", "N/m", bodies, [](auto& b) -> auto& { return b.stiffness; });
-  a.column("bodies/glued_stiffness", "N/m", bodies, [](auto& b) -> auto& { return b.glued_stiffness; });
-  a.column("bodies/moved", "m", bodies, [](auto& b) -> auto& { return b.moved; });
-  a.column("bodies/opened", "m", bodies, [](auto& b) -> auto& { return b.opened; });
-  a.column("bodies/mass", "kg", bodies, [](auto& b) -> auto& { return b.mass; });
-  a.column("bodies/free", "-", bodies, [](auto& b) -> auto& { return b.free; });
-  a.column("bodies/yields", "-", bodies, [](auto& b) -> auto& { return b.yields; });
+  a.column(
+      "bodies/velocity", "m/s", bodies, [](auto& b) -> auto& { return b.velocity; });
+  a.column(
+      "bodies/opening", "m/s", bodies, [](auto& b) -> auto& { return b.opening; });
+  a.column(
+      "bodies/force", "N", bodies, [](auto& b) -> auto& { return b.force; });
+  a.column(
+      "bodies/spread", "N", bodies, [](auto& b) -> auto& { return b.spread; });
+  a.column(
+      "bodies/magnitude", "N", bodies, [](auto& b) -> auto& { return b.magnitude; });
+  a.column(
+      "bodies/stiffness", "N/m", bodies, [](auto& b) -> auto& { return b.stiffness; });
+  a.column(
+      "bodies/glued_stiffness", "N/m", bodies, [](auto& b) -> auto& { return b.glued_stiffness; });
+  a.column(
+      "bodies/moved", "m", bodies, [](auto& b) -> auto& { return b.moved; });
+  a.column(
+      "bodies/opened", "m", bodies, [](auto& b) -> auto& { return b.opened; });
+  a.column(
+      "bodies/mass", "kg", bodies, [](auto& b) -> auto& { return b.mass; });
+  a.column(
+      "bodies/free", "-", bodies, [](auto& b) -> auto& { return b.free; });
+  a.column(
+      "bodies/yields", "-", bodies, [](auto& b) -> auto& { return b.yields; });
 }
 
 template <class Archive, class W>
 void visit_walls(Archive& a, W& walls) {
-  [[maybe_unused]] const auto [shape, point, normal, radius, hollow, side_b, side_c, length, owned, spoke, spokes, along,
-                               low, high, body, material, moved] = Wall{};  // all its fields
-  a.column("walls/shape", "-", walls, [](auto& w) -> auto& { return w.shape; });
-  a.column("walls/point", "m", walls, [](auto& w) -> auto& { return w.point; });
-  a.column("walls/normal", "-", walls, [](auto& w) -> auto& { return w.normal; });
-  a.column("walls/radius", "m", walls, [](auto& w) -> auto& { return w.radius; });
-  a.column("walls/hollow", "-", walls, [](auto& w) -> auto& { return w.hollow; });
-  a.column("walls/side_b", "m", walls, [](auto& w) -> auto& { return w.side_b; });
-  a.column("walls/side_c", "m", walls, [](auto& w) -> auto& { return w.side_c; });
-  a.column("walls/length", "m", walls, [](auto& w) -> auto& { return w.length; });
-  a.column("walls/owned", "-", walls, [](auto& w) -> auto& { return w.owned; });
-  a.column("walls/spoke", "-", walls, [](auto& w) -> auto& { return w.spoke; });
-  a.column("walls/spokes", "-", walls, [](auto& w) -> auto& { return w.spokes; });
-  a.column("walls/along", "-", walls, [](auto& w) -> auto& { return w.along; });
-  a.column("walls/low", "m", walls, [](auto& w) -> auto& { return w.low; });
-  a.column("walls/high", "m", walls, [](auto& w) -> auto& { return w.high; });
-  a.column("walls/body", "-", walls, [](auto& w) -> auto& { return w.body; });
-  a.column("walls/material", "-", walls, [](auto& w) -> auto& { return w.material; });
-  a.column("walls/moved", "m", walls, [](auto& w) -> auto& { return w.moved; });
+  [[maybe_unused]] const auto [shape, point, normal, radius, hollow, side_b, side_c, length, owned, spoke, spokes,
+                               along, low, high, body, material, moved] = Wall{};  // all its fields
+  a.column(
+      "walls/shape", "-", walls, [](auto& w) -> auto& { return w.shape; });
+  a.column(
+      "walls/point", "m", walls, [](auto& w) -> auto& { return w.point; });
+  a.column(
+      "walls/normal", "-", walls, [](auto& w) -> auto& { return w.normal; });
+  a.column(
+      "walls/radius", "m", walls, [](auto& w) -> auto& { return w.radius; });
+  a.column(
+      "walls/hollow", "-", walls, [](auto& w) -> auto& { return w.hollow; });
+  a.column(
+      "walls/side_b", "m", walls, [](auto& w) -> auto& { return w.side_b; });
+  a.column(
+      "walls/side_c", "m", walls, [](auto& w) -> auto& { return w.side_c; });
+  a.column(
+      "walls/length", "m", walls, [](auto& w) -> auto& { return w.length; });
+  a.column(
+      "walls/owned", "-", walls, [](auto& w) -> auto& { return w.owned; });
+  a.column(
+      "walls/spoke", "-", walls, [](auto& w) -> auto& { return w.spoke; });
+  a.column(
+      "walls/spokes", "-", walls, [](auto& w) -> auto& { return w.spokes; });
+  a.column(
+      "walls/along", "-", walls, [](auto& w) -> auto& { return w.along; });
+  a.column(
+      "walls/low", "m", walls, [](auto& w) -> auto& { return w.low; });
+  a.column(
+      "walls/high", "m", walls, [](auto& w) -> auto& { return w.high; });
+  a.column(
+      "walls/body", "-", walls, [](auto& w) -> auto& { return w.body; });
+  a.column(
+      "walls/material", "-", walls, [](auto& w) -> auto& { return w.material; });
+  a.column(
+      "walls/moved", "m", walls, [](auto& w) -> auto& { return w.moved; });
 }
 
 template <class Archive, class W>
 void visit_wall_contacts(Archive& a, W& contacts) {
   [[maybe_unused]] const auto [grain, wall, history] = WallContact{};  // all its fields
-  a.column("wall_contacts/grain", "-", contacts, [](auto& c) -> auto& { return c.grain; });
-  a.column("wall_contacts/wall", "-", contacts, [](auto& c) -> auto& { return c.wall; });
-  a.column("wall_contacts/history", "N", contacts, [](auto& c) -> auto& { return c.history; });
+  a.column(
+      "wall_contacts/grain", "-", contacts, [](auto& c) -> auto& { return c.grain; });
+  a.column(
+      "wall_contacts/wall", "-", contacts, [](auto& c) -> auto& { return c.wall; });
+  a.column(
+      "wall_contacts/history", "N", contacts, [](auto& c) -> auto& { return c.history; });
 }
 
 template <class Archive, class G>
 void visit_glued(Archive& a, G& glued) {
   [[maybe_unused]] const auto [grain, body] = GluedGrain{};  // all its fields
-  a.column("glued/grain", "-", glued, [](auto& g) -> auto& { return g.grain; });
-  a.column("glued/body", "-", glued, [](auto& g) -> auto& { return g.body; });
+  a.column(
+      "glued/grain", "-", glued, [](auto& g) -> auto& { return g.grain; });
+  a.column(
+      "glued/body", "-", glued, [](auto& g) -> auto& { return g.body; });
 }
 
 template <class Archive, class L>
@@ -166,8 +200,9 @@ void visit_plan(Archive& a, P& plan) {
 /// structures, projection) and history(name, unit, contacts); S is State or const State.
 template <class Archive, class S>
 void visit_state(Archive& a, S& state) {
-  auto& [dimension, time, step, dt, cell, grains, contacts, list, bodies, walls, spokes, wall_contacts, glued, virial, stiffness_sum, ledger,
-         friction, stage, stage_step, stage_time, unbalanced, kinetic, policy, servo, cycle] = state;
+  auto& [dimension, time, step, dt, cell, grains, contacts, list, bodies, walls, spokes, wall_contacts, glued, virial,
+         stiffness_sum, ledger, friction, stage, stage_step, stage_time, unbalanced, kinetic, policy, servo, cycle] =
+      state;
   a.value("dimension", "-", dimension);
   a.value("time", "s", time);
   a.value("step", "-", step);

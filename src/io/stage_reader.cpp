@@ -201,7 +201,8 @@ void read_until(const TomlReader& t, StageSpec& stage) {
                     std::ranges::any_of(stage.hold, [](const auto& c) { return c.quantity == Quantity::stress; }) ||
                     std::ranges::any_of(stage.bodies, [](const auto& b) { return b.servo != BodyDrive::Servo::none; });
   if (error && !aims)
-    throw t.error("stress_error", "needs a stress that is aimed at", "add stress or hold to the stage, or a servo to a body");
+    throw t.error("stress_error", "needs a stress that is aimed at",
+                  "add stress or hold to the stage, or a servo to a body");
   if (cycles && !stage.cycle) throw t.error("cycles", "needs a cycle to count", "add cycle = { … } to the stage");
 }
 

@@ -87,7 +87,8 @@ std::vector<std::array<std::size_t, 3>> join_corners(Facets& facets, double tole
   return numbers;
 }
 
-void check_surface(const MeshSpec& mesh, const std::vector<std::array<std::size_t, 3>>& corner, const std::string& path) {
+void check_surface(const MeshSpec& mesh, const std::vector<std::array<std::size_t, 3>>& corner,
+                   const std::string& path) {
   std::map<std::array<std::size_t, 2>, std::vector<std::pair<std::size_t, bool>>> edges;
   for (std::size_t f = 0; f < corner.size(); ++f) {
     const auto& x = mesh.facets[f];
@@ -105,7 +106,8 @@ void check_surface(const MeshSpec& mesh, const std::vector<std::array<std::size_
       throw input_error(path, 0, facet, fmt::format("has an edge that {} facets share", sharers.size()),
                         "a surface has one or two facets along an edge; repair the mesh");
     if (sharers.size() == 2 && sharers[0].second == sharers[1].second)
-      throw input_error(path, 0, facet, fmt::format("and its neighbour, facet {}, face opposite sides", sharers[1].first + 1),
+      throw input_error(path, 0, facet,
+                        fmt::format("and its neighbour, facet {}, face opposite sides", sharers[1].first + 1),
                         "flip one of them: corners must turn counter-clockwise seen from outside everywhere");
     if (sharers.size() == 1 && !mesh.open)
       throw input_error(path, 0, facet, "has an edge without a neighbour: the mesh has a hole",

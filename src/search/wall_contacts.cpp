@@ -78,7 +78,8 @@ bool within(const Extent& e, const Vec3& x, double margin) {
   return true;
 }
 
-/// Whether a part of a mesh is touched depends on where the grain's foot lies, which may change: all near it are listed.
+/// Whether a part of a mesh is touched depends on where the grain's foot lies, which may change: all near it are
+/// listed.
 void add_near_part(const State& state, Index w, const ByX& by_x, std::vector<WallContact>& fresh) {
   const Wall& wall = state.walls[w];
   const Extent extent = extent_of(wall);

@@ -8,8 +8,8 @@
 namespace eg {
 namespace {
 
-/// A body of mass m ≥ ¾ K Δt², or a servo that takes no more than ⅔ of the way at once, adds no more to λmax than half the
-/// stiffness of its contacts again (docs/walls.md).
+/// A body of mass m ≥ ¾ K Δt², or a servo that takes no more than ⅔ of the way at once, adds no more to λmax than half
+/// the stiffness of its contacts again (docs/walls.md).
 constexpr double yielding = 1.5;
 
 template <class Law>
@@ -85,9 +85,7 @@ class Gatherer {
     return reach;
   }
 
-  bool glued_gives(Index grain) const {
-    return glued_to_[grain] != no_index && state_.bodies[glued_to_[grain]].yields;
-  }
+  bool glued_gives(Index grain) const { return glued_to_[grain] != no_index && state_.bodies[glued_to_[grain]].yields; }
 
   const State& state_;
   std::vector<Index> glued_to_;  ///< body of every grain; empty when nothing is glued

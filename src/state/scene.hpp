@@ -57,7 +57,7 @@ struct WallSpec {
   bool hollow = true;           ///< cylinder: grains are inside
   std::array<double, 2> share;  ///< cylinder: height [m] (NaN: between planes across its axis) and angle [rad] of the
                                 ///< part that grains press on, for stresses
-  Vec3 along;                   ///< unit; only grains whose centre has low ≤ (x − point)·along < high feel the wall
+  Vec3 along;  ///< unit; only grains whose centre has low ≤ (x − point)·along < high feel the wall
   std::array<double, 2> window{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   std::string material;  ///< a name of [material.*]
   std::size_t body = 0;  ///< of BoundarySpec::bodies
@@ -89,10 +89,10 @@ std::vector<BodySpec> box_bodies(int dimension);
 /// [boundary]
 struct BoundarySpec {
   enum class Kind { periodic, free, box };
-  Kind kind = Kind::periodic;   ///< box: the six (2D: four) planes of the specimen's box become walls
-  std::string wall_material;    ///< box only
-  std::vector<BodySpec> bodies; ///< box: x_low, x_high, y_low, … first
-  std::vector<WallSpec> walls;  ///< further walls: [[boundary.wall]], [[boundary.rings]]
+  Kind kind = Kind::periodic;    ///< box: the six (2D: four) planes of the specimen's box become walls
+  std::string wall_material;     ///< box only
+  std::vector<BodySpec> bodies;  ///< box: x_low, x_high, y_low, … first
+  std::vector<WallSpec> walls;   ///< further walls: [[boundary.wall]], [[boundary.rings]]
   std::vector<MeshSpec> meshes;
 };
 
@@ -147,9 +147,9 @@ struct BodyDrive {
   Vec3 velocity;       ///< [m/s]
   double opening = 0;  ///< rate at which the radius of its cylinders grows [m/s]
   Servo servo = Servo::none;
-  double target = 0;             ///< [N], or [Pa] (2D: N/m) on the loaded area; of the grains on the body, along `along`
-  Vec3 along;                    ///< unit, out of the specimen; not read when radial
-  bool radial = false;           ///< the radius answers
+  double target = 0;    ///< [N], or [Pa] (2D: N/m) on the loaded area; of the grains on the body, along `along`
+  Vec3 along;           ///< unit, out of the specimen; not read when radial
+  bool radial = false;  ///< the radius answers
   double max_speed = not_given;  ///< of the servo [m/s]; default: so that the inertial number stays below 2.5e-3
   std::array<bool, 3> free{};    ///< axes along which the forces of the grains accelerate it
 };
@@ -176,7 +176,7 @@ struct StageSpec {
   double until_shear_strain = not_given;  ///< largest |γ| since the stage began [-]
   double until_cycles = not_given;
   double until_displacement = not_given;  ///< largest way of a body (or growth of a radius) since the stage began [m]
-  double max_steps = 5e6;  ///< a stage that has not ended by then stops the run with an error
+  double max_steps = 5e6;                 ///< a stage that has not ended by then stops the run with an error
   // record
   double record_every_steps = not_given;  ///< default: 1000, unless by strain
   double record_every_strain = not_given;

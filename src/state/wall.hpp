@@ -1,5 +1,6 @@
 #pragma once
-// Rigid boundaries. A wall is one surface; a body is what moves and is weighed as one: a platen, half a shear box, a ring.
+// Rigid boundaries. A wall is one surface; a body is what moves and is weighed as one: a platen, half a shear box, a
+// ring.
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -16,9 +17,9 @@ struct Body {
   double magnitude = 0;  ///< Σ |f| of its contacts [N]
   double stiffness = 0;  ///< Σ max(kn, kt) of its contacts, those of glued grains as they were last weighed [N/m]
   double glued_stiffness = 0;  ///< share of glued grains in it [N/m]
-  Vec3 moved;            ///< since the stage began [m]
-  double opened = 0;     ///< growth of the radius since the stage began [m]
-  double mass = 0;       ///< [kg], of a body that some stage sets free
+  Vec3 moved;                  ///< since the stage began [m]
+  double opened = 0;           ///< growth of the radius since the stage began [m]
+  double mass = 0;             ///< [kg], of a body that some stage sets free
   std::array<bool, 3> free{};  ///< axes along which it goes where forces take it
   bool yields = false;         ///< it answers the forces on it: free along an axis, or driven by a servo
 };
@@ -28,14 +29,14 @@ struct Body {
 struct Wall {
   static constexpr std::uint8_t plane = 0, cylinder = 1, face = 2, rim = 3, tip = 4;
   std::uint8_t shape = plane;
-  Vec3 point;           ///< on the plane; on the axis; first corner of the face; one end of the rim; the tip [m]
-  Vec3 normal;          ///< unit: plane, face: towards the grains; cylinder, rim: along it
-  double radius = 0;    ///< cylinder [m]
-  bool hollow = true;   ///< cylinder: grains are inside
-  Vec3 side_b, side_c;  ///< face: to its other corners [m]; rim: unit vectors into its faces, across it (0: no face)
-  double length = 0;    ///< rim [m]
-  std::uint8_t owned = 0;          ///< face: bits 0–2: a grain exactly over edge ab, bc, ca is its own
-  Index spoke = 0, spokes = 0;     ///< tip: where its edges begin in State::spokes, and how many they are
+  Vec3 point;              ///< on the plane; on the axis; first corner of the face; one end of the rim; the tip [m]
+  Vec3 normal;             ///< unit: plane, face: towards the grains; cylinder, rim: along it
+  double radius = 0;       ///< cylinder [m]
+  bool hollow = true;      ///< cylinder: grains are inside
+  Vec3 side_b, side_c;     ///< face: to its other corners [m]; rim: unit vectors into its faces, across it (0: no face)
+  double length = 0;       ///< rim [m]
+  std::uint8_t owned = 0;  ///< face: bits 0–2: a grain exactly over edge ab, bc, ca is its own
+  Index spoke = 0, spokes = 0;  ///< tip: where its edges begin in State::spokes, and how many they are
   /// Only grains whose centre has low ≤ (x − point)·along < high feel it.
   Vec3 along;
   double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();  ///< [m]

@@ -9,8 +9,8 @@
 #include "io/scene_file.hpp"
 #include "io/stl.hpp"
 #include "io/text_file.hpp"
-#include "specimen/make_walls.hpp"
 #include "scratch.hpp"
+#include "specimen/make_walls.hpp"
 #include "state/wall_geometry.hpp"
 
 using namespace eg;
@@ -21,9 +21,7 @@ using Mesh = std::vector<std::array<Vec3, 3>>;
 
 /// The surface of a box, two facets a side, seen from outside counter-clockwise.
 Mesh box_mesh(const Vec3& low, const Vec3& high) {
-  const auto at = [&](int i, int j, int k) {
-    return Vec3{i ? high.x : low.x, j ? high.y : low.y, k ? high.z : low.z};
-  };
+  const auto at = [&](int i, int j, int k) { return Vec3{i ? high.x : low.x, j ? high.y : low.y, k ? high.z : low.z}; };
   Mesh mesh;
   const auto side = [&](Vec3 a, Vec3 b, Vec3 c, Vec3 d) { mesh.push_back({a, b, c}), mesh.push_back({a, c, d}); };
   side(at(0, 0, 0), at(0, 1, 0), at(1, 1, 0), at(1, 0, 0)), side(at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1));
@@ -78,8 +76,10 @@ TEST(Walls, WindowTakesGrainsByTheirCentre) {
   const State state;
   Wall wall;
   wall.normal = {1, 0, 0}, wall.along = {0, 0, 1}, wall.low = -1, wall.high = 2;
-  for (const double z : {-1.0, 0.0, 1.999}) EXPECT_GT(grain_wall(state, wall, Vec3{0, 0, z}, 0.5, Arms::middle).overlap, 0);
-  for (const double z : {-1.001, 2.0, 5.0}) EXPECT_LT(grain_wall(state, wall, Vec3{0, 0, z}, 0.5, Arms::middle).overlap, 0);
+  for (const double z : {-1.0, 0.0, 1.999})
+    EXPECT_GT(grain_wall(state, wall, Vec3{0, 0, z}, 0.5, Arms::middle).overlap, 0);
+  for (const double z : {-1.001, 2.0, 5.0})
+    EXPECT_LT(grain_wall(state, wall, Vec3{0, 0, z}, 0.5, Arms::middle).overlap, 0);
 }
 
 TEST(Walls, ASphereTouchesABlockOnceWhereverItComes) {

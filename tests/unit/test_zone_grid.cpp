@@ -103,8 +103,8 @@ TEST(ZoneGrid, TheAxisOfACylinderMayLieAlongAnyAxis) {
 
 TEST(ZoneGrid, WallsAndCellsMakeTheContainer) {
   State state = scattered(3);
-  state.walls.push_back({.point = {0, 0, -0.5}, .normal = {0, 0, 1}, .velocity = {}, .force = {}});
-  state.walls.push_back({.point = {0, 0, 2}, .normal = {0, 0, -1}, .velocity = {}, .force = {}});
+  test::add_plane(state, {0, 0, -0.5}, {0, 0, 1});
+  test::add_plane(state, {0, 0, 2}, {0, 0, -1});
   state.cell.periodic = {true, false, false};
   state.cell.origin.x = -0.25, state.cell.h(0, 0) = 1.5;
   const auto ranges = specimen_ranges(state);
