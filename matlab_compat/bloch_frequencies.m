@@ -2,7 +2,7 @@ function [f, rotation] = bloch_frequencies(cell, k)
 % Frequencies [Hz], ascending, of the waves exp(1i*k'*x) of a periodic packing, and the share of rotation in each one's
 % kinetic energy. cell: see read_springs; k: column of three [rad/m].
 %
-% Every contact has three springs in its own frame (n, s, t): elongation and two slips, as rows of a compatibility matrix
+% Every contact has three springs in its own frame (n, s, t): elongation and two slips (a couple: rotations), as rows of a compatibility matrix
 % B (springs by motions). Then B' * stiffness * B * u = omega^2 * mass * u.
   grains = numel(cell.inverse_mass);
   springs = numel(cell.i);
@@ -14,8 +14,11 @@ function [f, rotation] = bloch_frequencies(cell, k)
     rows = 3 * c - 2:3 * c;
     from = 6 * cell.i(c) - 5:6 * cell.i(c);
     to = 6 * cell.j(c) - 5:6 * cell.j(c);
-    B(rows, from) = B(rows, from) - frame' * material_point(cell.arm_i(c) * frame(:, 1));
-    B(rows, to) = B(rows, to) + phase * frame' * material_point(-cell.arm_j(c) * frame(:, 1));
+    of_i = material_point(cell.arm_i(c) * frame(:, 1));
+    of_j = material_point(-cell.arm_j(c) * frame(:, 1));
+    if cell.couple(c), of_i = [zeros(3), eye(3)]; of_j = of_i; end
+    B(rows, from) = B(rows, from) - frame' * of_i;
+    B(rows, to) = B(rows, to) + phase * frame' * of_j;
     stiffness(rows) = [cell.kn(c); cell.kt(c); cell.kt(c)];
   end
   inverse = [repmat(cell.inverse_mass, 3, 1); repmat(cell.inverse_inertia, 3, 1)];

@@ -24,6 +24,10 @@ function c = elastic_tensor(springs, volume)
       strain(pairs(a, 1), pairs(a, 2)) = 0.5;
       e(:, a) = (strain + strain') * l;
     end
+    if p.couple(s)                                  % no strain turns grains against each other
+      b = [zeros(3), -eye(3), zeros(3), eye(3)] / radius;
+      e(:) = 0;
+    end
     gather = sparse(1:12, at, 1, 12, 6 * n);        % adds up when i = j
     k = k + gather' * (b' * spring * b) * gather;
     f = f + gather' * (b' * spring * e);

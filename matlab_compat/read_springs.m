@@ -8,7 +8,7 @@ function cell = read_springs(file)
   grains = numbers(2);
   springs = numbers(3);
   masses = reshape(numbers(4:3 + 2 * grains), 2, grains);
-  rest = reshape(numbers(4 + 2 * grains:end), 9, springs);
+  rest = reshape(numbers(4 + 2 * grains:end), 10, springs);
   cell.inverse_mass = masses(1, :);
   cell.inverse_inertia = masses(2, :);
   cell.i = rest(1, :);
@@ -18,4 +18,5 @@ function cell = read_springs(file)
   cell.kt = rest(7, :);
   cell.arm_i = rest(8, :);
   cell.arm_j = rest(9, :);
+  cell.couple = rest(10, :) > 0;
 end

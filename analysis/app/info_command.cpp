@@ -13,6 +13,7 @@
 #include "io/scene_file.hpp"
 #include "report/table.hpp"
 #include "specimen/lattice.hpp"
+#include "state/friction.hpp"
 
 namespace eg {
 namespace {
@@ -72,13 +73,11 @@ Table memory_table(const State& state, const ForceWorkspace& work) {
 }
 
 nlohmann::json scene_json(const Scene& scene, const State& state) {
-  bool friction = false;
-  for (const auto& m : scene.materials) friction = friction || m.friction > 0;
   return {{"title", scene.title},
           {"dimension", scene.dimension},
           {"particles", state.grains.size()},
           {"law", scene.contact.law},
-          {"friction", friction},
+          {"friction", has_friction(scene)},
           {"shear_history", state.contacts.history_vectors > 0},
           {"rotation", state.grains.rotates()},
           {"walls", state.walls.size()},

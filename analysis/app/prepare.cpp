@@ -14,6 +14,7 @@
 #include "io/scene_file.hpp"
 #include "specimen/make_packing.hpp"
 #include "specimen/make_state.hpp"
+#include "state/friction.hpp"
 
 namespace eg {
 
@@ -69,6 +70,7 @@ State make_specimen(const Scene& scene) {
   state.stage = 0, state.step = 0, state.time = 0, state.ledger = {}, state.policy = {}, state.dt = 0;
   state.friction.clear();
   fit_rotation(scene, state);
+  scatter_friction(state, friction_scatter(scene));
   return state;
 }
 

@@ -9,6 +9,7 @@
 
 #include "boundary/body_control.hpp"
 #include "boundary/cell_control.hpp"
+#include "dynamics/bonds.hpp"
 #include "measure/stress.hpp"
 #include "measure/tensor.hpp"
 
@@ -86,6 +87,12 @@ void add_network_columns(Columns& c, const std::string& joule) {
   c.push_back({{"kinetic_energy", joule}, [](const RowSource& r) { return r.state.kinetic; }});
 }
 
+void add_bond_columns(Columns& c) {
+  c.push_back({{"bonds", "-"}, [](const RowSource& r) { return static_cast<double>(intact_bonds(r.state)); }});
+  c.push_back({{"bonds_pulled", "-"}, [](const RowSource& r) { return static_cast<double>(r.state.bonds.pulled); }});
+  c.push_back({{"bonds_cut", "-"}, [](const RowSource& r) { return static_cast<double>(r.state.bonds.cut); }});
+}
+
 void add_energy_columns(Columns& c, const std::string& joule) {
   c.push_back({{"elastic_normal", joule}, [](const RowSource& r) { return r.energy.normal; }});
   c.push_back({{"elastic_shear", joule}, [](const RowSource& r) { return r.energy.shear; }});
@@ -153,6 +160,7 @@ Columns columns_of(const Scene& scene) {
   add_network_columns(c, joule);
   add_fabric_columns(c, scene.dimension);
   add_body_columns(c, scene);
+  if (std::ranges::any_of(scene.stages, [](const StageSpec& s) { return s.bond.has_value(); })) add_bond_columns(c);
   if (scene.energy) add_energy_columns(c, joule);
   return c;
 }
@@ -171,10 +179,7 @@ double inertial_number_of(const Scene& scene, const State& state, const Homogeni
 
 EnergyTable energies(const Scene& scene, const State& state) {
   EnergyTable t;
-  visit_contacts(scene, state, [&](const ContactPoint& p) {
-    t.normal += p.normal_energy;
-    if (p.normal.tangential > 0) t.shear += 0.5 * dot(p.shear, p.shear) / p.normal.tangential;
-  });
+  visit_contacts(scene, state, [&](const ContactPoint& p) { t.normal += p.normal_energy, t.shear += p.shear_energy; });
   const auto& e = state.ledger;
   t.kinetic = state.kinetic, t.friction = e.friction;
   t.path = e.shear_work - e.friction - t.shear;

@@ -14,6 +14,7 @@
 #include "base/progress.hpp"
 #include "base/version.hpp"
 #include "boundary/cell_control.hpp"
+#include "dynamics/bonds.hpp"
 #include "io/scene_file.hpp"
 #include "io/snapshot.hpp"
 #include "io/text_file.hpp"
@@ -150,6 +151,11 @@ nlohmann::json result_json(const Scene& scene, const State& state, const Control
                      {"friction", e.friction},         {"local_damping", e.local_damping},
                      {"mass_damping", e.mass_damping}, {"viscous_damping", e.viscous_damping}};
   }
+  if (state.bonds.made > 0)
+    j["bonds"] = {{"made", state.bonds.made},
+                  {"intact", intact_bonds(state)},
+                  {"pulled", state.bonds.pulled},
+                  {"cut", state.bonds.cut}};
   return j;
 }
 
@@ -170,6 +176,10 @@ void print_result(const nlohmann::json& j, const fs::path& folder, int dimension
              j["solid_fraction"].get<double>());
   fmt::print("  coordination Z, Z_m      {:.3f}, {:.3f}  (without rattlers {:.3f})\n", j["coordination"].get<double>(),
              j["mechanical_coordination"].get<double>(), j["backbone_coordination"].get<double>());
+  if (j.contains("bonds"))
+    fmt::print("  bonds                    {} of {} hold, {} broke by tension, {} by shear\n",
+               j["bonds"]["intact"].dump(), j["bonds"]["made"].dump(), j["bonds"]["pulled"].dump(),
+               j["bonds"]["cut"].dump());
   fmt::print("  largest overlap          {:.3g} % of the smaller diameter\n", 100 * j["largest_overlap"].get<double>());
   fmt::print(
       "  time step                {:.4g} s, certified limit {:.4g} s ({} evaluations, {:.1f} % of the run time)\n",

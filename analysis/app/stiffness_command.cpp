@@ -97,7 +97,7 @@ StiffnessReport analyse(const StiffnessFlags& flags, const Snapshot& work) {
   StiffnessReport r;
   r.name = flags.packing.input, r.title = work.scene.title;
   r.dimension = network.dimension, r.rotation = network.rotation, r.periodic = is_periodic(state);
-  r.particles = network.size(), r.rattlers = bone.rattlers, r.contacts = bone.network.springs.size();
+  r.particles = network.size(), r.rattlers = bone.rattlers, r.contacts = bone.network.contacts();
   r.state = homogenise(work.scene, state);
   r.volume = r.state.volume;
   for (const double inverse : network.inverse_mass) r.density += inverse > 0 ? 1 / inverse / r.volume : 0;

@@ -49,8 +49,9 @@ std::vector<EffectiveRow> effective_rows(const StiffnessReport& r, const Network
   const auto& h = r.state;
   const MeanPacking packing{h.coordination.mean, h.solid_fraction, h.sizes.mean / 2};
   double kn = 0, kt = 0;
-  for (const Spring& s : network.springs) kn += s.normal, kt += s.tangential;
-  const auto count = static_cast<double>(network.springs.size());
+  for (const Spring& s : network.springs)
+    if (!s.couple) kn += s.normal, kt += s.tangential;
+  const auto count = static_cast<double>(network.contacts());
   rows.push_back({"mean-field", "from Z, φ, mean R, mean kn and kt", mean_field(packing, kn / count, kt / count)});
   if (std::isnan(m.shear_modulus) || !(h.mean_stress > 0)) return rows;
   const double g = m.shear_modulus, nu = m.poisson, p = h.mean_stress;

@@ -41,7 +41,7 @@ int timestep_command(const TimestepFlags& flags) {
   TimestepReport report;
   report.name = flags.packing.input, report.title = work.scene.title;
   const Network net = linearise(work.scene, work.state);
-  report.particles = net.size(), report.contacts = net.springs.size();
+  report.particles = net.size(), report.contacts = net.contacts();
   report.dimension = net.dimension, report.rotation = net.rotation;
   report.summary = summarise(net);
   report.interval = step_interval(net);

@@ -141,7 +141,7 @@ std::string text_of(const DispersionReport& r) {
   line("particles",
        fmt::format("{}, {} of the unit cell {}", r.particles, r.unit.copies, r.unit.copies == 1 ? "copy" : "copies"));
   line("unit cell",
-       fmt::format("{} grains, {} contacts, {} branches", net.size(), net.springs.size(), total_dofs(net)));
+       fmt::format("{} grains, {} contacts, {} branches", net.size(), net.contacts(), total_dofs(net)));
   out += fmt::format("\nat the points of the path{}:\n{}", total_dofs(net) > 12 ? " (twelve slowest branches)" : "",
                      corner_table(r).text());
   if (!r.slopes.empty()) out += fmt::format("\nlong waves:\n{}", slope_table(r).text());
@@ -155,7 +155,7 @@ nlohmann::json json_of(const DispersionReport& r) {
                    {"particles", r.particles},
                    {"unit_cell",
                     {{"particles", r.unit.network.size()},
-                     {"contacts", r.unit.network.springs.size()},
+                     {"contacts", r.unit.network.contacts()},
                      {"copies", r.unit.copies},
                      {"edges_m", nlohmann::json::array()}}},
                    {"corners", nlohmann::json::array()},

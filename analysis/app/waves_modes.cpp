@@ -236,7 +236,7 @@ int modes_command(ModesFlags flags) {
   const Network net = linearise(work.scene, work.state);
   ModesReport r;
   r.name = flags.packing.input, r.title = work.scene.title;
-  r.particles = net.size(), r.contacts = net.springs.size();
+  r.particles = net.size(), r.contacts = net.contacts();
   if (flags.wants_modes()) r.modes = find_modes(flags, net);
   if (!flags.states.empty()) r.density = find_density(flags, net, r.modes);
   r.elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

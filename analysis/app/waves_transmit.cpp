@@ -56,7 +56,7 @@ double mean_overlap(const Scene& scene, const State& state) {
 double affine_speed(const Network& net, double volume, int axis, int motion) {
   double stiffness = 0, mass = 0;
   for (const auto& s : net.springs) {
-    if (s.j == no_index) continue;
+    if (s.j == no_index || s.couple) continue;
     const double a = s.n[axis] * s.n[axis], m = s.n[motion] * s.n[motion];
     stiffness += s.length * s.length *
                  ((s.normal - s.tangential) * a * m + s.tangential * (axis == motion ? a : (a + m) / 4)) / volume;

@@ -55,7 +55,7 @@ SharedTimestep shared_timestep(const SlepcSession& session, const std::string& p
   SharedTimestep report;
   report.particles = part.grains;
   report.rows = part.grains * static_cast<std::size_t>(network.dofs_per_grain());
-  for (const double n : session.gather(static_cast<double>(network.springs.size())))
+  for (const double n : session.gather(static_cast<double>(network.contacts())))
     report.contacts += static_cast<std::size_t>(n);
   if (report.contacts == 0) return report;
 

@@ -29,6 +29,7 @@ BackboneNetwork backbone(const Network& network) {
     before = springs.size();
     ends.assign(network.size(), 0);
     for (const Spring& s : springs) {
+      if (s.couple) continue;
       ++ends[s.i];
       if (s.j != no_index) ++ends[s.j];
     }

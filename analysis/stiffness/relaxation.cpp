@@ -36,11 +36,11 @@ class FieldReader {
       field[grain * width_ + k] += c < 3 ? force[c] : moment[c - 3];
     }
   }
-  /// Δ = u_j − u_i + n × (a_i θ_i + a_j θ_j)
+  /// Δ = u_j − u_i + n × (a_i θ_i + a_j θ_j), of a couple θ_j − θ_i
   Vec3 gap(const Field& field, const Spring& s) const {
     Vec3 ui, ti, uj, tj;
     read(field, s.i, ui, ti), read(field, s.j, uj, tj);
-    return uj - ui + cross(s.n, s.arm_i * ti + s.arm_j * tj);
+    return s.couple ? tj - ti : uj - ui + cross(s.n, s.arm_i * ti + s.arm_j * tj);
   }
 
  private:
@@ -57,6 +57,7 @@ Field load_vector(const Network& network, const LoadCases& loads, int a) {
   const FieldReader reader(network);
   Field f(total_dofs(network), 0.0);
   for (const Spring& s : network.springs) {
+    if (s.couple) continue;  // a homogeneous strain turns nothing
     const Vec3 force = spring_force(s, loads.jump(s, a)), turn = cross(s.n, force);
     reader.add(f, s.i, force, s.arm_i * turn);
     reader.add(f, s.j, -force, s.arm_j * turn);
@@ -79,7 +80,7 @@ Energies energies_of(const Network& network, const LoadCases& loads, const std::
   for (std::size_t k = low; k < high; ++k) {
     const Spring& s = network.springs[k];
     for (int a = 0; a < loads.count(); ++a) {
-      const Vec3 jump = loads.jump(s, a);
+      const Vec3 jump = s.couple ? Vec3{} : loads.jump(s, a);
       const Vec3 whole = fields.empty() ? jump : jump + reader.gap(fields[static_cast<std::size_t>(a)], s);
       e.col(a) << jump.x, jump.y, jump.z;
       d.col(a) << whole.x, whole.y, whole.z;

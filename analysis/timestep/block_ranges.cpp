@@ -20,7 +20,19 @@ struct alignas(64) Sums {
   Double8 second{};  ///< Σ h nnᵀ, Σ f y, Σ f z
 };
 
+/// A spring of couples: k_r (1 − nnᵀ) + k_t nnᵀ on the rotations, which is tr H − H for H = (k_r − k_t) nnᵀ + ½ k_t.
+void add_couple(Sums& sums, const Spring& s, double w) {
+  const double excess = w * (s.tangential - s.normal), twist = 0.5 * w * s.normal;
+  const Vec3& n = s.n;
+  sums.second += Double8{excess * n.x * n.x + twist, excess * n.y * n.y + twist, excess * n.z * n.z + twist,
+                         excess * n.y * n.z,         excess * n.x * n.z,         excess * n.x * n.y};
+}
+
 EG_INLINE void add_side(Sums& sums, const Spring& s, const Side& side, double w) {
+  if (s.couple) {
+    if (!side.own_image) add_couple(sums, s, w);
+    return;
+  }
   double e = w * (s.normal - s.tangential), g = w * s.tangential, f, h;
   if (side.own_image) {  // both ends move alike: only the turning is left
     const double arm = s.arm_i + s.arm_j;

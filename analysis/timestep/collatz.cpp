@@ -18,6 +18,8 @@ struct BlockNorms {
 
 /// ‖A_iᵀA_j‖₂. In contact axes A Aᵀ = diag(kn/m, kt (1/m + a²/I), same), so the norm is a maximum of products.
 double coupling_norm(const Network& network, const Spring& s) {
+  if (s.couple)
+    return std::max(s.normal, s.tangential) * std::sqrt(network.inverse_inertia[s.i] * network.inverse_inertia[s.j]);
   const auto turning = [&](Index grain, double arm) {
     return network.inverse_mass[grain] + (network.rotation ? arm * arm * network.inverse_inertia[grain] : 0.0);
   };

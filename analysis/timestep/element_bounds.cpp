@@ -68,8 +68,14 @@ double largest_row_sum(const Network& network, bool symmetric) {
 
 double element_time_step(const Network& network) {
   const auto z = coordination_numbers(network);
-  double largest = 0;
+  double largest = 0, largest_couple = 0;  // an element is a contact with its couple: not above the sum of both
   for (const Spring& s : network.springs) {
+    if (s.couple) {
+      double share = z[s.i] * network.inverse_inertia[s.i];
+      if (s.j != no_index) share += z[s.j] * network.inverse_inertia[s.j];
+      largest_couple = std::max(largest_couple, std::max(s.normal, s.tangential) * share);
+      continue;
+    }
     double normal = 0, tangential = 0;
     const auto add = [&](Index grain, double arm) {
       const double share = z[grain] * network.inverse_mass[grain];
@@ -80,7 +86,7 @@ double element_time_step(const Network& network) {
     if (s.j != no_index) add(s.j, s.arm_j);
     largest = std::max({largest, s.normal * normal, s.tangential * tangential});
   }
-  return 2 / std::sqrt(largest);
+  return 2 / std::sqrt(largest + largest_couple);
 }
 
 double gershgorin_time_step(const Network& network) {

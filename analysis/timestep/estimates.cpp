@@ -26,6 +26,11 @@ std::vector<DiagonalSums> diagonal_sums(const Network& network) {
       for (int a = 0; a < 3; ++a) {
         const auto k = static_cast<std::size_t>(a);
         const double along = s.n[a] * s.n[a];
+        if (s.couple) {
+          const double couple = s.normal * along + s.tangential * (1 - along);
+          sums[grain].rotation_arm[k] += couple, sums[grain].rotation_radius[k] += couple;
+          continue;
+        }
         sums[grain].translation[k] += s.normal * along + s.tangential * (1 - along);
         sums[grain].rotation_arm[k] += s.tangential * arm * arm * (1 - along);
         sums[grain].rotation_radius[k] += s.tangential * r * r * (1 - along);

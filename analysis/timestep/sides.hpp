@@ -60,8 +60,12 @@ class Sides {
     Block sum = Block::Zero();
     for (const Side& side : of(grain)) {
       const Spring& s = network_.springs[side.spring];
-      const Lever lever = lever_of(s, side);
-      const Eigen::Matrix3d c = stiffness(side);  // B = [sign, a n×]
+      const Eigen::Matrix3d c = stiffness(side);
+      if (s.couple) {  // B = [0, ±1]
+        if (!side.own_image) sum.bottomRightCorner<3, 3>() += c;
+        continue;
+      }
+      const Lever lever = lever_of(s, side);  // B = [sign, a n×]
       Eigen::Matrix3d arm;
       arm << 0, -s.n.z, s.n.y, s.n.z, 0, -s.n.x, -s.n.y, s.n.x, 0;
       arm *= lever.arm;

@@ -24,6 +24,17 @@ double centred_weight(double a_i, double room_i, double a_j, double room_j) {
   return std::isfinite(t) ? std::clamp(t, 1 / widest, widest) : 1.0;
 }
 
+/// |θ_j − θ_i|² ≤ 2|θ_i|² + 2|θ_j|²: couples of twice the stiffness against the ground, on every grain.
+void add_couple(std::vector<Spring>& springs, Spring s) {
+  if (!s.couple || s.i == s.j) return;
+  const Index j = s.j;
+  s.j = no_index;
+  springs.push_back(s);
+  if (j == no_index) return;
+  s.i = j;
+  springs.push_back(s);
+}
+
 /// The largest that a spring can add to λmax(S_i) of a grain at weight 1 (arm ≤ R) [1/s²].
 double most_added(double kn, double kt, double inverse_mass, double inverse_inertia, double radius) {
   return std::max(kn * inverse_mass, kt * (inverse_mass + inverse_inertia * radius * radius));
@@ -82,12 +93,17 @@ Block block_of(const Sides& sides, const std::vector<double>& t, Index grain) {
 
 }  // namespace
 
-Spring StandingBounds::counted(const State& state, const ContactPoint& p) const {
+StandingBounds::Counted StandingBounds::counted(const State& state, const ContactPoint& p) const {
   const auto& velocity = state.grains.velocity;  // w: inverse mass
   const double inverse_mass = velocity[p.i].w + (p.j == no_index ? 0.0 : velocity[p.j].w);
-  Spring spring = damped_spring(spring_of(p), inverse_mass, damping_, state.policy.bound.step);
-  spring.normal *= p.give, spring.tangential *= p.give;
-  return spring;
+  const double step = state.policy.bound.step;
+  Counted c{damped_spring(spring_of(p), inverse_mass, damping_, step), {}};
+  c.contact.normal *= p.give, c.contact.tangential *= p.give;
+  if (state.grains.rotates() && p.has_couple()) {
+    c.couple = damped_spring(couple_of(p), inverse_mass, damping_, step);
+    c.couple.normal *= 2 * p.give, c.couple.tangential *= 2 * p.give;
+  }
+  return c;
 }
 
 void StandingBounds::remember(const State& state) {
@@ -104,6 +120,7 @@ double StandingBounds::renew(State& state, const RenewOptions& options) {
   damping_ = damping_in_force(scene_, state);
   const bool warm = bound.value > 0;
   Network network = bare_network(scene_, state);
+  std::vector<Spring> couples;  // come last
   std::vector<double> start;
   std::vector<std::size_t> entry;  // of each spring between grains
   bound.overlap.assign(list.size(), 0.0);
@@ -113,12 +130,16 @@ double StandingBounds::renew(State& state, const RenewOptions& options) {
   visit_contacts(
       scene_, state,
       [&](const ContactPoint& p) {
-        network.springs.push_back(counted(state, p));
+        const Counted c = counted(state, p);
+        network.springs.push_back(c.contact);
+        add_couple(couples, c.couple);
         (p.j == no_index ? bound.wall_overlap : bound.overlap)[p.entry] = p.reach;
         if (p.j != no_index) entry.push_back(p.entry);
         if (warm) start.push_back(p.j == no_index ? 1.0 : weight_of(state, p.entry, p.i, p.j));
       },
       foreseen(state, options.time, options.slack));
+  network.springs.insert(network.springs.end(), couples.begin(), couples.end());
+  if (warm) start.resize(network.springs.size(), 1.0);
   bound.weight.assign(list.size(), 0.0);
 
   const Sides sides(network);
@@ -146,7 +167,7 @@ double StandingBounds::renew(State& state, const RenewOptions& options) {
   for (Index g = 0; g < bound.grain.size(); ++g)
     if (scalars.ranges.low[g] > 0.9 * needed) stiffest.push_back(g);
   stiffest.resize(std::min<std::size_t>(stiffest.size(), 64));
-  return largest_self_block(Sides(part(state, stiffest, {}).network)) * (1 - 1e-12);
+  return largest_self_block(Sides(part(state, stiffest, {}, false).network)) * (1 - 1e-12);
 }
 
 bool StandingBounds::follow(State& state) {
@@ -178,13 +199,19 @@ bool StandingBounds::follow(State& state) {
   return true;
 }
 
-void StandingBounds::add_excess(State& state, const ContactPoint& at, const Spring& before) {
+void StandingBounds::add_excess(State& state, const ContactPoint& at, const Counted& before) {
   const auto& g = state.grains;
-  const Spring now = counted(state, at);
-  const double kn = std::max(0.0, now.normal - before.normal), kt = std::max(0.0, now.tangential - before.tangential);
+  const Counted now = counted(state, at);
+  const auto more = [](double later, double earlier) { return std::max(0.0, later - earlier); };
+  const double kn = more(now.contact.normal, before.contact.normal),
+               kt = more(now.contact.tangential, before.contact.tangential);
+  const double couple =
+      std::max(more(now.couple.normal, before.couple.normal), more(now.couple.tangential, before.couple.tangential));
   const auto add = [&](Index i, double w) {
     double& bound = state.policy.bound.grain[i];
-    bound += w * most_added(kn, kt, g.velocity[i].w, g.rotates() ? g.spin[i].w : 0.0, g.radius(i)) * rounding;
+    const double inverse_inertia = g.rotates() ? g.spin[i].w : 0.0;
+    bound +=
+        (w * most_added(kn, kt, g.velocity[i].w, inverse_inertia, g.radius(i)) + couple * inverse_inertia) * rounding;
     if (bound > state.policy.bound.value && place_[i] == no_index) place_[i] = 0, doubtful_.push_back(i);
   };
   const bool wall = at.j == no_index;
@@ -219,7 +246,7 @@ StandingCheck StandingBounds::check(State& state, double time, double slack) {
   std::vector<std::size_t> entries, wall_entries;
   for (const auto& p : outgrown) (p.j == no_index ? wall_entries : entries).push_back(p.entry);
   place_.resize(state.grains.size(), no_index);
-  std::vector<Spring> before(outgrown.size());  // at what they were allowed
+  std::vector<Counted> before(outgrown.size());  // at what they were allowed
   std::size_t k = 0;
   visit_contacts(
       scene_, state, {entries, wall_entries}, [&](const ContactPoint& p) { before[k - 1] = counted(state, p); },
@@ -236,7 +263,7 @@ StandingCheck StandingBounds::check(State& state, double time, double slack) {
 }
 
 StandingBounds::Part StandingBounds::part(const State& state, const std::vector<Index>& grains,
-                                          const OverlapGrowth& growth) {
+                                          const OverlapGrowth& growth, bool couples) {
   const auto& g = state.grains;
   const auto& list = state.contacts;
   place_.resize(g.size(), no_index);
@@ -269,11 +296,15 @@ StandingBounds::Part StandingBounds::part(const State& state, const std::vector<
           next_pair = std::find(next_pair, out.pairs.end(), p.entry);
           out.pair_reach[static_cast<std::size_t>(next_pair - out.pairs.begin())] = p.reach;
         }
-        Spring s = counted(state, p);
-        s.i = place(s.i);
-        if (s.j != no_index) s.j = place(s.j);
-        net.springs.push_back(s);
+        Counted c = counted(state, p);
+        for (Spring* s : {&c.contact, &c.couple}) {
+          s->i = place(p.i);
+          if (p.j != no_index) s->j = place(p.j);
+        }
+        net.springs.push_back(c.contact);
         out.entry.push_back(p.j == no_index ? no_entry : p.entry);
+        if (couples) add_couple(net.springs, c.couple);
+        out.entry.resize(net.springs.size(), no_entry);
       },
       growth);
   for (const Index i : net.id) place_[i] = no_index;
@@ -282,7 +313,7 @@ StandingBounds::Part StandingBounds::part(const State& state, const std::vector<
 
 bool StandingBounds::examine(State& state, const std::vector<Index>& grains, double time, double slack) {
   StandingBound& bound = state.policy.bound;
-  const Part stiff = part(state, grains, foreseen(state, time, slack));
+  const Part stiff = part(state, grains, foreseen(state, time, slack), true);
   const Network& net = stiff.network;
   std::vector<double> t(net.springs.size(), 1.0);
   for (std::size_t k = 0; k < t.size(); ++k)

@@ -4,7 +4,8 @@
 // A renewal bounds the S_i of contact splitting with every pair at the overlap that it is allowed, somewhat more than
 // it has. A check looks at all listed pairs at the overlap that they can reach until the next one. Pairs within what
 // they are allowed change nothing. Each of the others adds at most (1 + t^±1) max(Δkn/m, Δkt (1/m + R²/I)) to λmax(S_i)
-// of its grains (Weyl 1912); a grain whose sum does not fit below the bound is worked out afresh. Proof:
+// of its grains (Weyl 1912); a grain whose sum does not fit below the bound is worked out afresh. A spring of couples
+// is counted as one of twice its stiffness against the ground on each of its grains, which is not less. Proof:
 // certificates.md.
 #include "assembly/damping.hpp"
 #include "state/gather.hpp"
@@ -49,11 +50,16 @@ class StandingBounds {
   };
   static constexpr std::size_t no_entry = ~std::size_t{0};
 
-  /// The spring of a contact as the damped network has it.
-  Spring counted(const State& state, const ContactPoint& contact) const;
-  Part part(const State& state, const std::vector<Index>& grains, const OverlapGrowth& growth);
+  /// The springs of a contact as the damped network has them.
+  struct Counted {
+    Spring contact;
+    Spring couple;  ///< of twice the stiffness; nothing where the contact has none
+  };
+  Counted counted(const State& state, const ContactPoint& contact) const;
+  /// `couples`: whether to count them; without, λmax of the part is no upper bound.
+  Part part(const State& state, const std::vector<Index>& grains, const OverlapGrowth& growth, bool couples);
   /// Adds what a pair beyond its allowance may add to λmax(S_i) of its grains.
-  void add_excess(State& state, const ContactPoint& at, const Spring& before);
+  void add_excess(State& state, const ContactPoint& at, const Counted& before);
   /// Works out S_i of these grains with their pairs at what they can reach, and allows them that.
   bool examine(State& state, const std::vector<Index>& grains, double time, double slack);
 

@@ -25,6 +25,7 @@ struct Range {
 std::vector<int> coordination_numbers(const Network& network) {
   std::vector<int> numbers(network.size(), 0);
   for (const Spring& s : network.springs) {
+    if (s.couple) continue;
     ++numbers[s.i];
     if (s.j != no_index) ++numbers[s.j];
   }
@@ -41,6 +42,7 @@ NetworkSummary summarise(const Network& network) {
     coordination.add(numbers[g]);
   }
   for (const Spring& s : network.springs) {
+    if (s.couple) continue;
     normal.add(s.normal);
     tangential.add(s.tangential);
   }

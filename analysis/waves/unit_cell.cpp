@@ -42,7 +42,8 @@ class Symmetry {
     }
     size_ = 2 * *std::ranges::max_element(net_.radius);
     for (auto& list : sights_)
-      std::ranges::sort(list, [this](const Sight& a, const Sight& b) { return below(a.branch(), b.branch(), size_); });
+      std::ranges::stable_sort(  // a contact stays before its couple
+          list, [this](const Sight& a, const Sight& b) { return below(a.branch(), b.branch(), size_); });
     order_.resize(net_.size());
     std::iota(order_.begin(), order_.end(), Index{0});
     for (const auto& x : at_) wrapped_.push_back(wrap(x));
@@ -58,8 +59,9 @@ class Symmetry {
     const auto& a = sights_[i];
     const auto& b = sights_[j];
     return std::ranges::equal(a, b, [&](const Sight& p, const Sight& q) {
-      return norm(p.branch() - q.branch()) <= same * size_ && relative(p.spring.normal, q.spring.normal) &&
-             close(p.spring.tangential, q.spring.tangential, p.spring.normal) &&
+      return p.spring.couple == q.spring.couple && norm(p.branch() - q.branch()) <= same * size_ &&
+             relative(p.spring.normal, q.spring.normal) &&
+             close(p.spring.tangential, q.spring.tangential, std::max(p.spring.normal, p.spring.tangential)) &&
              relative(p.spring.arm_i, q.spring.arm_i) && relative(p.spring.arm_j, q.spring.arm_j);
     });
   }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "contact/lanes.hpp"
@@ -24,11 +23,42 @@ StiffnessOperator::StiffnessOperator(const Network& network, Scaling scaling)
     }
   u_.resize(grains_ + 1), turn_.resize(grains_ + 1);
   build_links(network);
+  build_couples(network);
+}
+
+void StiffnessOperator::build_couples(const Network& network) {
+  if (std::ranges::none_of(network.springs, &Spring::couple)) return;
+  couple_begin_.assign(grains_ + 2, 0);
+  const auto each_end = [&](auto use) {
+    for (const Spring& s : network.springs) {
+      if (!s.couple || s.i == s.j) continue;
+      const Index j = s.j == no_index ? static_cast<Index>(grains_) : s.j;
+      use(s.i, Couple{s.n, s.tangential, s.normal - s.tangential, j});
+      if (s.j != no_index) use(s.j, Couple{s.n, s.tangential, s.normal - s.tangential, s.i});
+    }
+  };
+  each_end([&](Index g, const Couple&) { ++couple_begin_[g + 2]; });
+  for (std::size_t g = 2; g < couple_begin_.size(); ++g) couple_begin_[g] += couple_begin_[g - 1];
+  couples_.resize(couple_begin_.back());
+  each_end([&](Index g, const Couple& c) { couples_[couple_begin_[g + 1]++] = c; });
+}
+
+/// Couples of the springs of couples on one grain. Each spring is visited from both of its ends: no grain waits for
+/// another.
+Vec3 StiffnessOperator::couple_on(std::size_t grain) const {
+  Vec3 sum;
+  for (std::size_t k = couple_begin_[grain]; k < couple_begin_[grain + 1]; ++k) {
+    const Couple& c = couples_[k];
+    const Vec3 bend = turn_[grain].vec() - turn_[c.other].vec();
+    sum += bend * c.rolling + c.n * (c.excess * dot(c.n, bend));
+  }
+  return sum;
 }
 
 void StiffnessOperator::build_links(const Network& network) {
-  std::vector<std::size_t> order(network.springs.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::size_t> order;
+  for (std::size_t s = 0; s < network.springs.size(); ++s)
+    if (!network.springs[s].couple) order.push_back(s);
   // The schedule wants the grain of the earlier chunk first: a spring numbered the other way is turned round.
   const auto low = [&](std::size_t c) { return std::min(network.springs[c].i, network.springs[c].j); };
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return low(a) < low(b); });
@@ -115,6 +145,8 @@ void StiffnessOperator::store(std::size_t chunk, double* y) const {
     row(schedule_.gather_row[e]) = Double8{};
   }
   const std::size_t low = chunk * chunk_grains, high = std::min(grains_, low + chunk_grains);
+  if (!couples_.empty())
+    for (std::size_t g = low; g < high; ++g) sums_[2 * g + 1].set(sums_[2 * g + 1].vec() + couple_on(g));
   std::size_t g = low;
   if constexpr (sizeof...(component) == 6)
     for (; g + 1 < high; ++g) {

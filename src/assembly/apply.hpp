@@ -41,7 +41,15 @@ class StiffnessOperator {
     double arm_i[lanes] = {}, arm_j[lanes] = {};
   };
 
+  struct Couple {  ///< a spring of couples as one of its grains sees it; a wall is the row of zeros
+    Vec3 n;
+    double rolling = 0, excess = 0;  ///< stiffness across n, and what twisting about n has more
+    Index other = 0;
+  };
+
   void build_links(const Network& network);
+  void build_couples(const Network& network);
+  Vec3 couple_on(std::size_t grain) const;
   template <int... component>
   void run(const double* x, double* y) const;
   template <int... component>
@@ -54,7 +62,9 @@ class StiffnessOperator {
   bool solid_, rotation_;
   std::vector<double> scale_, turn_scale_;  ///< m^−½, I^−½ a grain
   std::vector<Links> links_;
-  std::vector<Index> i_, j_;              ///< grains of each lane; a wall is the row of zeros behind the grains
+  std::vector<Index> i_, j_;               ///< grains of each lane; a wall is the row of zeros behind the grains
+  std::vector<std::size_t> couple_begin_;  ///< couples of grain g: [couple_begin_[g], couple_begin_[g + 1])
+  std::vector<Couple> couples_;
   std::vector<std::size_t> first_links_;  ///< of each chunk, and an end mark
   Schedule schedule_;
   mutable AlignedVector<Quad> u_, turn_, sums_;

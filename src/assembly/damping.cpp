@@ -6,9 +6,9 @@ namespace eg {
 
 namespace {
 
-/// The spring as a dashpot.
+/// The spring as a dashpot; none resists rolling.
 Spring dashpot(Spring s, double inverse_mass, const DampingSpec& damping) {
-  const double mass = inverse_mass > 0 ? 1 / inverse_mass : 0.0;
+  const double mass = inverse_mass > 0 && !s.couple ? 1 / inverse_mass : 0.0;
   s.normal = 2 * damping.normal_ratio * std::sqrt(mass * s.normal);
   s.tangential = 2 * damping.shear_ratio * std::sqrt(mass * s.tangential);
   return s;

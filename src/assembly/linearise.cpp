@@ -4,6 +4,7 @@
 
 #include "contact/lanes.hpp"
 #include "contact/laws.hpp"
+#include "state/friction.hpp"
 #include "state/wall_geometry.hpp"
 
 namespace eg {
@@ -35,10 +36,14 @@ TangentBlock tangent(const ContactPoint& p, const State& state,
   for (std::size_t h = 0; h < history.size(); ++h)
     history[h] = wall ? D12(state.wall_contacts[p.entry].history[h]) : D12(state.contacts.history_at(p.entry, h));
   const auto c = broadcast_struct<typename Law::template Constants<D12>, D12>(constants);
-  const auto f = interact<Law, false>(Law::template pair<D12>(c, wall ? wall_sizes(ri) : grain_sizes(ri, rj)), g, inc,
-                                      true, history, Dashpot<D12>{});
+  auto pair = Law::template pair<D12>(c, wall ? wall_sizes(ri) : grain_sizes(ri, rj));
+  if (wall)
+    pair.friction = pair.friction * D12(state.wall_contacts[p.entry].friction);
+  else if (!state.contacts.friction.empty())
+    pair.friction = pair.friction * D12(state.contacts.friction[p.entry]);
+  const auto f = interact<Law, false>(pair, g, inc, g.overlap > D12(0.0), history, Dashpot<D12>{});
 
-  const Vec<D12> on_i = -f.on_j, moment_i = f.moment * g.arm_i, moment_j = f.moment * g.arm_j;
+  const Vec<D12> on_i = -f.on_j, moment_i = f.moment * g.arm_i + f.couple, moment_j = f.moment * g.arm_j - f.couple;
   TangentBlock block{p.i, p.j, {}};
   const std::array<const Vec<D12>*, 4> rows{&on_i, &moment_i, &f.on_j, &moment_j};
   for (std::size_t r = 0; r < (wall ? 6u : 12u); ++r)
@@ -51,6 +56,10 @@ TangentBlock tangent(const ContactPoint& p, const State& state,
 Spring spring_of(const ContactPoint& p) {
   const Geometry<double>& g = p.geometry;
   return {p.i, p.j, g.arm_i, g.arm_j, p.normal.stiffness, p.normal.tangential, g.n, norm(p.branch), p.give};
+}
+
+Spring couple_of(const ContactPoint& p) {
+  return {p.i, p.j, 0, 0, p.twisting, p.rolling, p.geometry.n, norm(p.branch), p.give, true};
 }
 
 Network bare_network(const Scene& scene, const State& state) {
@@ -70,7 +79,12 @@ Network bare_network(const Scene& scene, const State& state) {
 
 Network linearise(const Scene& scene, const State& state) {
   Network net = bare_network(scene, state);
-  visit_contacts(scene, state, [&](const ContactPoint& p) { net.springs.push_back(spring_of(p)); });
+  std::vector<Spring> couples;
+  visit_contacts(scene, state, [&](const ContactPoint& p) {
+    net.springs.push_back(spring_of(p));
+    if (net.rotation && p.has_couple()) couples.push_back(couple_of(p));
+  });
+  net.springs.insert(net.springs.end(), couples.begin(), couples.end());
   return net;
 }
 
@@ -78,13 +92,7 @@ std::vector<TangentBlock> consistent_blocks(const Scene& scene, const State& sta
   std::vector<TangentBlock> blocks;
   with_law(scene.contact.law, [&]<class Law>(Law) {
     const std::size_t kinds = scene.materials.size();
-    std::vector<typename Law::template Constants<double>> table;
-    for (std::size_t a = 0; a < kinds; ++a)
-      for (std::size_t b = 0; b < kinds; ++b) {
-        Material ma = scene.materials[a], mb = scene.materials[b];
-        if (!state.friction.empty()) ma.friction = state.friction[a], mb.friction = state.friction[b];
-        table.push_back(Law::constants(ma, mb, scene.dimension));
-      }
+    const auto table = pair_constants<Law>(scene.materials, friction_in_force(scene, state), scene.dimension);
     const Arms arms = arms_of(scene);
     visit_contacts(scene, state, [&](const ContactPoint& p) {
       const auto mi = state.grains.material_of(p.i);

@@ -17,6 +17,8 @@ Network bare_network(const Scene& scene, const State& state);
 
 /// The spring of one contact, with the stiffness that it was visited with.
 Spring spring_of(const ContactPoint& contact);
+/// Its spring of couples, where it has one.
+Spring couple_of(const ContactPoint& contact);
 
 /// Exact derivative of one contact's forces, K_c = −∂(F_i, M_i, F_j, M_j)/∂(u_i, θ_i, u_j, θ_j): 12×12, row major.
 /// Sliding, geometric terms and history updates included; j == no_index for a wall (its rows and columns are zero).

@@ -53,6 +53,11 @@ std::span<const int> active_components(const Network& network) {
 
 Eigen::Matrix<double, 3, 6> side_matrix(const Spring& spring, ContactSide side) {
   const bool first = side == ContactSide::first;
+  if (spring.couple) {
+    Eigen::Matrix<double, 3, 6> b = Eigen::Matrix<double, 3, 6>::Zero();
+    b.rightCols<3>() = (first ? -1.0 : 1.0) * Eigen::Matrix3d::Identity();
+    return b;
+  }
   const Vec3 an = (first ? spring.arm_i : spring.arm_j) * spring.n;
   Eigen::Matrix<double, 3, 6> b;
   b.leftCols<3>() = (first ? -1.0 : 1.0) * Eigen::Matrix3d::Identity();
@@ -127,7 +132,20 @@ std::vector<double> diagonal_blocks(const Network& network) {
         if (r >= 3 && c < 3) block[p * d + q] += mixed * cross_rows[c][r - 3];
       }
   };
+  const auto add_couple = [&](Index grain, const Spring& s) {
+    for (std::size_t p = 0; p < d; ++p)
+      for (std::size_t q = 0; q < d; ++q)
+        if (const int r = components[p], c = components[q]; r >= 3 && c >= 3)
+          blocks[grain * d * d + p * d + q] +=
+              (r == c ? s.tangential : 0.0) + (s.normal - s.tangential) * s.n[r - 3] * s.n[c - 3];
+  };
   for (const Spring& s : network.springs) {
+    if (s.couple) {
+      if (s.i == s.j) continue;
+      add_couple(s.i, s);
+      if (s.j != no_index) add_couple(s.j, s);
+      continue;
+    }
     if (s.i == s.j) {
       add(s.i, s, 0, s.arm_i + s.arm_j);
       continue;

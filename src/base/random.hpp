@@ -7,6 +7,15 @@
 
 namespace eg {
 
+/// Next number of a small stream, uniform in [0, 1) with 53 bits, for streams that are seeded by the thousand
+/// (splitmix64, Steele et al. 2014).
+inline double next_uniform(std::uint64_t& state) {
+  std::uint64_t z = state += 0x9e3779b97f4a7c15;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
+  return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}

@@ -13,6 +13,7 @@ enum class Unloading { keep, rescale };
 template <Unloading unloading>
 struct HertzMindlinLaw {
   static constexpr std::string_view name = unloading == Unloading::keep ? "hertz-mindlin" : "hertz-mindlin-rescale";
+  static constexpr std::string_view partial_slip_name = "hertz-mindlin-deresiewicz";
   static constexpr std::size_t history_vectors = 1, history_scalars = unloading == Unloading::rescale ? 1 : 0;
 
   static std::vector<ConstantSet> constant_sets() {

@@ -43,15 +43,16 @@ struct Motion {
   Vec<S> translation;  ///< u_j − u_i [m], with the affine part of a deforming cell
   Vec<S> turn;         ///< θ_i + θ_j [rad]
   Vec<S> roll;         ///< R_i θ_i + R_j θ_j [m]
+  Vec<S> bend{};       ///< θ_j − θ_i [rad], for laws with couples
 };
 template <class S>
 EG_INLINE Motion<S> motion_of(const Vec<S>& translation, const Vec<S>& ti, const S& ri, const Vec<S>& tj, const S& rj) {
-  return {translation, ti + tj, ti * ri + tj * rj};
+  return {translation, ti + tj, ti * ri + tj * rj, tj - ti};
 }
 /// Against a wall, which does not turn: translation is the wall's minus the grain's.
 template <class S>
 EG_INLINE Motion<S> wall_motion(const Vec<S>& translation, const Vec<S>& turn, const S& radius) {
-  return {translation, turn, turn * radius};
+  return {translation, turn, turn * radius, -turn};
 }
 
 template <class S>
@@ -59,6 +60,8 @@ struct Increment {
   S approach;   ///< increase of overlap by the motion [m]
   Vec<S> slip;  ///< tangential [m]
   S twist;      ///< mean rotation of both sides about n [rad]
+  Vec<S> bend;  ///< rotation of j against i across n [rad]
+  S torsion;    ///< likewise about n [rad]
 };
 
 /// Δ = u_j − u_i − (a_i θ_i + a_j θ_j) × n with a = R − shorten, split along and across n.
@@ -68,9 +71,10 @@ EG_INLINE Increment<S> increment(const Geometry<S>& g, const Motion<S>& m) {
   Vec<S> slip = m.translation - g.n * along;
   if constexpr (rotation) {
     slip -= cross(m.roll - m.turn * g.shorten, g.n);
-    return {-along, slip, S(0.5) * dot(m.turn, g.n)};
+    const S torsion = dot(m.bend, g.n);
+    return {-along, slip, S(0.5) * dot(m.turn, g.n), m.bend - g.n * torsion, torsion};
   } else {
-    return {-along, slip, S(0.0)};
+    return {-along, slip, S(0.0), {S(0.0), S(0.0), S(0.0)}, S(0.0)};
   }
 }
 
@@ -95,17 +99,20 @@ template <class S>
 struct ContactForce {
   Vec<S> on_j;          ///< f [N]
   Vec<S> moment;        ///< n × T [N]; times the arm: moment on each grain
+  Vec<S> couple{};      ///< M [N m], on i as +M and on j as −M; of laws with couples
   Response<S> law;      ///< the law's own part, without dashpots
   Vec<S> shear_before;  ///< T of the last step, turned into the new plane [N]
   Vec<S> dashpot;       ///< the dashpots' part of on_j [N]
 };
 
-/// Force of one contact. `touching` masks lanes that overlap; history of the others is cleared.
+/// Force of one contact. `touching` masks lanes that overlap; history of the others is cleared, unless a bond holds.
 template <class Law, bool damped, class S, class M>
 EG_INLINE ContactForce<S> interact(const typename Law::template Pair<S>& pair, const Geometry<S>& g,
                                    const Increment<S>& inc, M touching, ContactHistory<Law, S>& history,
                                    const Dashpot<S>& dashpot) {
   Strain<S> strain{select(touching, g.overlap, S(0.0)), inc.slip};
+  if constexpr (HasCouples<Law>) strain.roll = inc.bend, strain.twist = inc.torsion, strain.opening = g.overlap;
+  if constexpr (HasBonds<Law>) touching = touching | (history[Law::bond_value] > S(0.0));
   for (std::size_t k = 0; k < Law::history_vectors; ++k)
     set_history_vector(history, k, turn(history_vector(history, k), g.n, inc.twist));
   ContactForce<S> out;
@@ -118,6 +125,7 @@ EG_INLINE ContactForce<S> interact(const typename Law::template Pair<S>& pair, c
     out.on_j -= out.law.shear;
     out.moment = cross(g.n, out.law.shear);
   }
+  if constexpr (HasCouples<Law>) out.couple = out.law.couple + g.n * out.law.torsion;
   if constexpr (damped) {
     const S cn = S(2.0) * dashpot.normal_ratio * sqrt(dashpot.mass * out.law.normal.stiffness) * dashpot.per_dt;
     out.dashpot = g.n * select(touching, cn * inc.approach, S(0.0));

@@ -115,6 +115,28 @@ EG_INLINE void add_contact(Quad* rows, const Index* i, const Index* j, const Vec
   }
 }
 
+/// The same with a couple behind each moment: +couple to i, −couple to j.
+template <class S>
+EG_INLINE void add_contact_with_couple(Quad* rows, const Index* i, const Index* j, const Vec<S>& f,
+                                       const Vec<S>& moment, const S& arm_i, const S& arm_j, const Vec<S>& couple) {
+  if constexpr (lanes_of<S> == 1) {
+    const auto add = [](Quad& q, const Vec3& v) { q.set(q.vec() + v); };
+    add(rows[2 * i[0]], -f), add(rows[2 * i[0] + 1], moment * arm_i + couple);
+    add(rows[2 * j[0]], f), add(rows[2 * j[0] + 1], moment * arm_j - couple);
+  } else {
+    Double4 force[8], first[8], second[8];
+    transpose_columns({f.x, f.y, f.z, Batch(0.0)}, force);
+    const Vec<S> on_i = moment * arm_i + couple, on_j = moment * arm_j - couple;
+    transpose_columns({on_i.x, on_i.y, on_i.z, Batch(0.0)}, first);
+    transpose_columns({on_j.x, on_j.y, on_j.z, Batch(0.0)}, second);
+    const auto at = [rows](std::size_t k) -> Double4& { return *reinterpret_cast<Double4*>(rows + k); };
+    for (std::size_t k = 0; k < 8; ++k) {
+      at(2 * i[k]) -= force[k], at(2 * i[k] + 1) += first[k];
+      at(2 * j[k]) += force[k], at(2 * j[k] + 1) += second[k];
+    }
+  }
+}
+
 template <class S>
 EG_INLINE Vec<S> xyz(const Columns<S>& c) {
   return {c.x, c.y, c.z};

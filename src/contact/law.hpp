@@ -12,8 +12,12 @@ namespace eg {
 /// Motion of a contact during the last increment, as a law sees it.
 template <class S>
 struct Strain {
-  S overlap;    ///< δ [m], > 0 when touching
+  S overlap;    ///< δ [m], > 0 when touching, 0 when not
   Vec<S> slip;  ///< Δs [m], increment of the tangential displacement of j against i
+  // for laws with couples
+  Vec<S> roll{};  ///< Δθ [rad], rotation of j against i across n
+  S twist{};      ///< likewise about n
+  S opening{};    ///< δ with its sign, < 0 for a gap [m]
 };
 
 /// What a law may know of the two bodies' sizes.
@@ -37,7 +41,7 @@ EG_INLINE Sizes<S> wall_sizes(const S& r) {
 /// Response normal to the contact plane.
 template <class S>
 struct NormalResponse {
-  S force;       ///< N [N], ≥ 0, repulsive
+  S force;       ///< N [N], repulsive; < 0 only where a bond pulls
   S stiffness;   ///< kn = dN/dδ [N/m]
   S tangential;  ///< kt [N/m] of a sticking contact
 };
@@ -48,6 +52,22 @@ struct Response {
   Vec<S> shear;  ///< T [N], acts on i as +T and on j as −T; lies in the contact plane
   Vec<S>
       unslipped;  ///< T that elastic sticking alone would have given [N]; differs from `shear` when the contact slides
+  S loss{};       ///< dissipated in the increment otherwise than by |T| > µN [J]
+  // of laws with couples
+  Vec<S> couple{};    ///< M [N m] across n, acts on i as +M and on j as −M
+  S torsion{};        ///< likewise about n
+  S work{};           ///< done in the increment on all springs but the normal one [J]; `loss` holds all that is lost
+  S pulled{}, cut{};  ///< 1 when the bond breaks by tension or by shear
+};
+
+/// A contact at rest: what K, the measures and the energies need of it.
+struct Standing {
+  NormalResponse<double> normal{};   ///< N, kn, kt, those of a bond included
+  Vec3 shear;                        ///< T [N], likewise
+  double rolling = 0, twisting = 0;  ///< stiffness against rotation of j against i, across and about n [N m]
+  double normal_energy = 0;          ///< work of N from 0 to the overlap [J]
+  double shear_energy = 0;           ///< of the other springs [J]; T²/(2kt) where kt depends on N
+  bool bonded = false;
 };
 
 /// A law has
@@ -59,7 +79,8 @@ struct Response {
 /// - Pair<S>: constants of one contact, made of Constants and Sizes;
 /// - normal(pair, overlap) for overlap ≥ 0, zero force at 0;
 /// - normal_energy(pair, overlap): the work of N from 0 to overlap [J];
-/// - respond(pair, strain, history): new forces; history goes in and comes out.
+/// - respond(pair, strain, history): new forces; history goes in and comes out;
+/// - further_constants(), if it needs constants beside the set.
 template <class L>
 concept ContactLaw = requires(const Material& m, const typename L::template Constants<double>& c,
                               const typename L::template Pair<double>& p, double x, const Strain<double>& s,
@@ -72,6 +93,26 @@ concept ContactLaw = requires(const Material& m, const typename L::template Cons
   { L::normal_energy(p, x) } -> std::same_as<double>;
   { L::template respond<double>(p, s, h) } -> std::same_as<Response<double>>;
 };
+
+/// A law that resists rotation of one grain against the other; at_rest(pair, overlap, history) gives its Standing.
+template <class L>
+concept HasCouples = requires {
+  requires L::couples;
+};
+/// A law with bonds: history value L::bond_value is > 0 while one holds, bond(history, overlap) makes one.
+template <class L>
+concept HasBonds = HasCouples<L> && requires {
+  L::bond_value;
+};
+
+/// What the material of a scene must give beside one set of constants.
+template <class L>
+ConstantSet further_constants() {
+  if constexpr (requires { L::further_constants(); })
+    return L::further_constants();
+  else
+    return {};
+}
 
 template <class L>
 inline constexpr std::size_t history_size = L::history_vectors * 3 + L::history_scalars;
@@ -87,6 +128,19 @@ EG_INLINE void set_history_vector(std::array<S, H>& h, std::size_t k, const Vec<
   h[3 * k] = v.x, h[3 * k + 1] = v.y, h[3 * k + 2] = v.z;
 }
 
+/// Constants of every pair of materials, row after row; `friction` is µ in force of every pair in the same order.
+template <class Law>
+auto pair_constants(const std::vector<Material>& materials, const std::vector<double>& friction, int dimension) {
+  std::vector<typename Law::template Constants<double>> table;
+  for (const Material& a : materials)
+    for (const Material& b : materials) {
+      Material first = a, second = b;
+      first.friction = second.friction = friction[table.size()];
+      table.push_back(Law::constants(first, second, dimension));
+    }
+  return table;
+}
+
 /// Coulomb's limit: T is `trial`, shortened to µN where longer.
 template <class S>
 EG_INLINE Vec<S> coulomb(const Vec<S>& trial, const S& limit) {
@@ -94,6 +148,37 @@ EG_INLINE Vec<S> coulomb(const Vec<S>& trial, const S& limit) {
   const auto slides = t2 > limit * limit;
   if (!any(slides)) return trial;
   return trial * select(slides, limit * rsqrt(max(t2, S(1e-300))), S(1.0));
+}
+
+/// T += kt Δs, |T| ≤ µN, with T as the first vector of the history.
+template <class S, std::size_t H>
+EG_INLINE Response<S> cumulative_shear(const NormalResponse<S>& n, const S& friction, const Vec<S>& slip,
+                                       std::array<S, H>& h) {
+  const Vec<S> trial = history_vector(h, 0) + slip * n.tangential;
+  const Vec<S> shear = coulomb(trial, friction * n.force);
+  set_history_vector(h, 0, shear);
+  return {n, shear, trial};
+}
+
+/// Standing of a law's own springs, given T.
+template <class Law>
+Standing standing_springs(const typename Law::template Pair<double>& pair, double overlap, const Vec3& shear) {
+  Standing s;
+  s.normal = Law::template normal<double>(pair, overlap);
+  s.normal_energy = Law::normal_energy(pair, overlap);
+  s.shear = shear;
+  if (s.normal.tangential > 0) s.shear_energy = dot(shear, shear) / (2 * s.normal.tangential);
+  return s;
+}
+
+/// Work on a spring k, and what it lost of it, when its force went from `before` to `after` though sticking would have
+/// led to `trial`; trapezoidal rule over the motion.
+template <class S>
+EG_INLINE void add_spring_work(Response<S>& r, const Vec<S>& before, const Vec<S>& after, const Vec<S>& trial,
+                               const S& k, const Vec<S>& motion) {
+  const Vec<S> mean = (before + after) * S(0.5);
+  r.work = r.work + dot(mean, motion);
+  r.loss = r.loss + select(k > S(0.0), dot(mean, trial - after) / max(k, S(1e-300)), S(0.0));
 }
 
 /// The law without friction: no shear, no history, no tangential stiffness.

@@ -5,12 +5,19 @@
 #include <tuple>
 #include <vector>
 
+#include "contact/hertz_exponent.hpp"
 #include "contact/hertz_mindlin.hpp"
 #include "contact/linear.hpp"
+#include "contact/linear_parallel_bond.hpp"
+#include "contact/linear_rolling.hpp"
+#include "contact/partial_slip.hpp"
+#include "contact/rough_hertz_mindlin.hpp"
 
 namespace eg {
 
-using Laws = std::tuple<Linear, HertzMindlin, HertzMindlinRescale>;
+using Laws =
+    std::tuple<Linear, LinearIncremental, HertzMindlin, HertzMindlinRescale, HertzExponent, HertzMindlinPartialSlip,
+               RoughHertzMindlin, RoughPartialSlip, LinearRolling, LinearParallelBond>;
 
 /// Names of all laws, in the order of the list.
 inline std::vector<std::string> law_names() {

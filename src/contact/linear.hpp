@@ -6,10 +6,16 @@
 
 namespace eg {
 
+/// What the shear spring remembers: `cumulative` all slip since the contact was made (Cundall and Strack 1979, PFC),
+/// `incremental` that of the last step alone, F_s = ks Δs, as the first deformation analyses with discrete elements
+/// did.
+enum class ShearSpring { cumulative, incremental };
+
 /// F_n = kn δ, F_s += ks Δs, |F_s| ≤ µ F_n. Either kn and ks are given, or PFC's deformability: kn = A E*/L with
 /// A = π min(R)² (2D: 2 min(R), unit thickness), L = R1 + R2 (wall: L = R1), ks = kn/k*.
-struct Linear {
-  static constexpr std::string_view name = "linear";
+template <ShearSpring spring>
+struct LinearLaw {
+  static constexpr std::string_view name = spring == ShearSpring::cumulative ? "linear" : "linear-incremental";
   static constexpr std::size_t history_vectors = 1, history_scalars = 0;
 
   static std::vector<ConstantSet> constant_sets() {
@@ -52,19 +58,25 @@ struct Linear {
 
   template <class S>
   EG_INLINE static NormalResponse<S> normal(const Pair<S>& p, const S& overlap) {
-    return {p.kn * overlap, p.kn, p.ks};
+    // A spring without memory acts on the last half step's velocity, as a dashpot ks Δt would. With dashpots C leapfrog
+    // is stable as long as 4M − 2Δt C − Δt² K is positive definite: such a spring counts twice.
+    return {p.kn * overlap, p.kn, spring == ShearSpring::cumulative ? p.ks : S(2.0) * p.ks};
   }
   static double normal_energy(const Pair<double>& p, double overlap) { return 0.5 * p.kn * overlap * overlap; }
 
   template <class S>
   EG_INLINE static Response<S> respond(const Pair<S>& p, const Strain<S>& strain, std::array<S, 3>& h) {
-    const auto n = normal<S>(p, strain.overlap);
-    const Vec<S> trial = history_vector(h, 0) + strain.slip * n.tangential;
+    auto n = normal<S>(p, strain.overlap);
+    n.tangential = p.ks;
+    Vec<S> trial = strain.slip * n.tangential;
+    if constexpr (spring == ShearSpring::cumulative) trial += history_vector(h, 0);
     const Vec<S> shear = coulomb(trial, p.friction * n.force);
     set_history_vector(h, 0, shear);
     return {n, shear, trial};
   }
 };
-static_assert(ContactLaw<Linear>);
+using Linear = LinearLaw<ShearSpring::cumulative>;
+using LinearIncremental = LinearLaw<ShearSpring::incremental>;
+static_assert(ContactLaw<Linear> && ContactLaw<LinearIncremental>);
 
 }  // namespace eg

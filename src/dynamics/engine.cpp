@@ -4,31 +4,32 @@
 
 #include <algorithm>
 
+#include "dynamics/bonds.hpp"
 #include "measure/volume.hpp"
 #include "search/neighbours.hpp"
+#include "state/friction.hpp"
 #include "state/gather.hpp"
 
 namespace eg {
 
 Engine::Engine(const Scene& scene, State& state, bool scalar) : scene_(scene), state_(state) {
-  if (state_.friction.empty())
-    for (const auto& m : scene.materials) state_.friction.push_back(m.friction);
-  bool frictionless = true;
-  for (const auto& m : scene.materials) frictionless = frictionless && m.friction == 0;
-  for (const auto& s : scene.stages) frictionless = frictionless && s.friction.value_or(0) == 0;
-  loop_ = make_force_loop(scene.contact.law, frictionless, state_.grains.rotates());
+  state_.friction = friction_in_force(scene, state_);
+  loop_ = make_force_loop(scene.contact.law, !has_friction(scene), state_.grains.rotates());
   loop_->set_materials(scene.materials, state_.friction, scene.dimension);
   const bool viscous = scene.energy && scene.damping.dashpots();
   options_ = {arms_of(scene), scene.damping.normal_ratio, scene.damping.shear_ratio, TallyLevel::none, viscous, scalar};
   kick_ = {scene.damping.local, scene.damping.mass, scene.gravity, scene.dimension};
   last_dt_ = state_.dt;
-  if (!state_.list.begin.empty()) {  // resumed
+  const std::size_t tail = viscous ? 1 : 0, size = loop_->history_size() + 3 * tail;
+  const Contacts& listed = state_.contacts;
+  if (listed.history_size == size && listed.history_vectors == loop_->history_vectors() &&
+      listed.tail_vectors == tail && !state_.list.begin.empty()) {  // goes on
     refresh_workspace();
     return;
   }
-  state_.contacts.tail_vectors = viscous ? 1 : 0;
-  state_.contacts.history_size = loop_->history_size() + 3 * state_.contacts.tail_vectors;
-  state_.contacts.history_vectors = loop_->history_vectors();
+  state_.contacts = {}, state_.wall_contacts = {}, state_.list = {};  // what another law left means nothing here
+  state_.contacts.tail_vectors = tail, state_.contacts.history_size = size;
+  state_.contacts.history_vectors = loop_->history_vectors(), state_.contacts.bond_value = loop_->bond_value();
   const auto [skin, contact_skin] = default_skins(state_);
   rebuild_neighbours(state_, skin, contact_skin);
   refresh_workspace();
@@ -51,6 +52,20 @@ void Engine::set_friction(const std::vector<double>& friction) {
   loop_->set_materials(scene_.materials, friction, scene_.dimension);
 }
 
+void Engine::bond(const BondSpec& spec) {
+  const double contact_skin = state_.list.contact_skin, skin = state_.list.skin;
+  if (spec.gap > contact_skin) {
+    rebuild_neighbours(state_, std::max(skin, 1.5 * spec.gap), spec.gap);
+    state_.list.skin = skin, state_.list.contact_skin = contact_skin;
+    refresh_workspace(), travelled_ = 0;
+    forces(0, TallyLevel::works);
+  }
+  for (const std::size_t c : pairs_to_bond(state_, spec, scene_.seed)) {
+    loop_->bond(state_.contacts, c, overlap_of(state_, c));
+    ++state_.bonds.made;
+  }
+}
+
 void Engine::forces(double dt, TallyLevel tally) { forces(dt, tally, {}); }
 
 void Engine::forces(double dt, TallyLevel tally, const AfterChunk& after) {
@@ -67,6 +82,8 @@ void Engine::forces(double dt, TallyLevel tally, const AfterChunk& after) {
     if (after)
       for (std::size_t k = 0; k < work_.schedule.chunks(); ++k) after(k);
   }
+  state_.bonds.pulled += static_cast<std::uint64_t>(grains.pulled),
+      state_.bonds.cut += static_cast<std::uint64_t>(grains.cut);
   if (tally == TallyLevel::none) return;
   now += grains;
   const Mat3 virial = now.virial;

@@ -11,8 +11,11 @@ class Engine {
   /// `scalar`: the reference force loop. Throws RunError when the cell is too narrow for its grains.
   Engine(const Scene& scene, State& state, bool scalar = false);
 
-  void set_friction(const std::vector<double>& friction);  ///< µ per material
+  void set_friction(const std::vector<double>& friction);  ///< as State::friction
   void set_local_damping(double alpha) { kick_.local = alpha; }
+
+  /// Makes bonds between grains that have none, at their present distance: no force changes.
+  void bond(const BondSpec& spec);
 
   /// Positions over state.dt, and the lists.
   void drift();

@@ -14,6 +14,7 @@ Tally& Tally::operator+=(const Tally& b) {
   virial += b.virial;
   force_sum += b.force_sum, touching += b.touching;
   stiffness_sum += b.stiffness_sum, shear_work += b.shear_work, friction += b.friction, viscous += b.viscous;
+  pulled += b.pulled, cut += b.cut;
   return *this;
 }
 

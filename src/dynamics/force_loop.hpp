@@ -20,6 +20,7 @@ struct Tally {
   double force_sum = 0;                              ///< Σ |f| [N]
   double touching = 0;                               ///< number of contacts that touch
   double shear_work = 0, friction = 0, viscous = 0;  ///< work and dissipation of the last increment [J]
+  double pulled = 0, cut = 0;                        ///< bonds broken in it by tension, by shear
   Tally& operator+=(const Tally& b);
 };
 
@@ -65,7 +66,10 @@ class ForceLoop {
   virtual std::size_t history_size() const = 0;
   virtual std::size_t history_vectors() const = 0;
   virtual bool has_moments() const = 0;
-  /// Constants of all pairs of materials with these friction coefficients.
+  virtual std::size_t bond_value() const = 0;  ///< as Contacts::bond_value
+  /// Makes a bond in the history of contact c at its present overlap [m]; nothing for a law without bonds.
+  virtual void bond(Contacts& list, std::size_t c, double overlap) const = 0;
+  /// Constants of all pairs of materials; `friction` as State::friction.
   virtual void set_materials(const std::vector<Material>& materials, const std::vector<double>& friction,
                              int dimension) = 0;
   /// Adds forces of all grain–grain contacts after an increment of length dt to workspace.rows, updates history.

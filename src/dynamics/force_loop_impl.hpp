@@ -13,6 +13,10 @@ class ForceLoopOf final : public ForceLoop {
  public:
   using Table = typename Law::template Constants<double>;
   static constexpr std::size_t stride = rotation ? 2 : 1;  // quads a row of forces
+  static constexpr bool couples = rotation && HasCouples<Law>;
+  struct Nothing {};
+  template <class T>
+  using IfCouples = std::conditional_t<couples, T, Nothing>;
 
   std::size_t history_size() const override { return eg::history_size<Law>; }
   std::size_t history_vectors() const override { return Law::history_vectors; }
@@ -21,13 +25,7 @@ class ForceLoopOf final : public ForceLoop {
   void set_materials(const std::vector<Material>& materials, const std::vector<double>& friction,
                      int dimension) override {
     kinds_ = materials.size();
-    constants_.clear();
-    for (std::size_t a = 0; a < kinds_; ++a)
-      for (std::size_t b = 0; b < kinds_; ++b) {
-        Material ma = materials[a], mb = materials[b];
-        ma.friction = friction[a], mb.friction = friction[b];
-        constants_.push_back(Law::constants(ma, mb, dimension));
-      }
+    constants_ = pair_constants<Law>(materials, friction, dimension);
   }
 
   Tally contacts(State& state, ForceWorkspace& work, double dt, const ForceOptions& options,
@@ -48,6 +46,20 @@ class ForceLoopOf final : public ForceLoop {
 
   Tally walls(State& state, ForceWorkspace& work, double dt, const ForceOptions& options) const override;
 
+  std::size_t bond_value() const override {
+    if constexpr (HasBonds<Law>) return Law::bond_value;
+    return 0;
+  }
+
+  void bond(Contacts& list, std::size_t c, double overlap) const override {
+    if constexpr (HasBonds<Law>) {
+      ContactHistory<Law, double> history;
+      for (std::size_t h = 0; h < history.size(); ++h) history[h] = list.history_at(c, h);
+      Law::bond(history, overlap);
+      for (std::size_t h = 0; h < history.size(); ++h) list.history_at(c, h) = history[h];
+    }
+  }
+
  private:
   /// Number type and damping are settled here, outside the loop over contacts.
   Tally run_chunk(State& state, ForceWorkspace& work, std::size_t k, double dt, const ForceOptions& options) const {
@@ -62,6 +74,7 @@ class ForceLoopOf final : public ForceLoop {
   struct Sums {
     Mat<S> virial;
     S force = S(0.0), touching = S(0.0), stiffness = S(0.0), shear_work = S(0.0), friction = S(0.0), viscous = S(0.0);
+    S pulled = S(0.0), cut = S(0.0);
   };
 
   /// What the law gives back for eight (or one) contacts.
@@ -69,6 +82,7 @@ class ForceLoopOf final : public ForceLoop {
   struct Outgoing {
     Vec<S> force, moment;
     S arm_i, arm_j;
+    [[no_unique_address]] IfCouples<Vec<S>> couple;
   };
 
   /// Contacts go through in blocks, each in three passes: gather, law, scatter. One pass over all three would be a
@@ -100,9 +114,15 @@ class ForceLoopOf final : public ForceLoop {
       }
       for (std::size_t b = 0; b < count; ++b)
         respond<S, damped>(out[b], in[b], affine, uniform, state, c + b * lanes, dt, options, sums);
-      for (std::size_t b = 0; b < count; ++b)
-        add_contact<stride, S>(rows, list.i.data() + c + b * lanes, target + c + b * lanes, out[b].force, out[b].moment,
-                               lanes_at(out[b].arm_i), lanes_at(out[b].arm_j));
+      for (std::size_t b = 0; b < count; ++b) {
+        const Index *i = list.i.data() + c + b * lanes, *j = target + c + b * lanes;
+        if constexpr (couples)
+          add_contact_with_couple<S>(rows, i, j, out[b].force, out[b].moment, out[b].arm_i, out[b].arm_j,
+                                     out[b].couple);
+        else
+          add_contact<stride, S>(rows, i, j, out[b].force, out[b].moment, lanes_at(out[b].arm_i),
+                                 lanes_at(out[b].arm_j));
+      }
     }
     return finish(sums);
   }
@@ -131,6 +151,7 @@ class ForceLoopOf final : public ForceLoop {
       const Vec<S> wi = xyz(in.spin_i), wj = xyz(in.spin_j);
       motion.turn = (wi + wj) * S(dt);
       motion.roll = wi * (ri * S(dt)) + wj * (rj * S(dt));
+      if constexpr (couples) motion.bend = (wj - wi) * S(dt);
     }
     const auto inc = increment<rotation>(g, motion);
 
@@ -142,12 +163,16 @@ class ForceLoopOf final : public ForceLoop {
     if constexpr (damped)
       dashpot = {S(options.normal_ratio), S(options.shear_ratio),
                  select(inverse_mass > S(0.0), S(1.0) / inverse_mass, S(0.0)), S(dt > 0 ? 1 / dt : 0)};
-    const auto pair =
+    auto pair =
         Law::template pair<S>(!state.grains.material.empty() ? constants<S>(state, c) : uniform, grain_sizes(ri, rj));
+    if (Law::history_vectors > 0 && !list.friction.empty())
+      pair.friction = pair.friction * load_values<S>(list.friction.data() + c);
     const ContactForce<S> f = interact<Law, damped>(pair, g, inc, touching, history, dashpot);
     for (std::size_t h = 0; h < history.size(); ++h) store_values(stored + h * Contacts::lanes, history[h]);
     put(out.force, f.on_j);
     if constexpr (rotation) put(out.moment, f.moment), out.arm_i = g.arm_i, out.arm_j = g.arm_j;
+    if constexpr (couples) put(out.couple, f.couple);
+    if constexpr (HasBonds<Law>) sums.pulled = sums.pulled + f.law.pulled, sums.cut = sums.cut + f.law.cut;
 
     if (options.tally == TallyLevel::none) return;
     add_stress(sums, branch, f, touching);
@@ -182,12 +207,14 @@ class ForceLoopOf final : public ForceLoop {
   EG_INLINE static void add_works(Sums<S>& sums, const Increment<S>& inc, const ContactForce<S>& f, M touching) {
     sums.force = sums.force + root(dot(f.on_j, f.on_j));
     sums.touching = sums.touching + select(touching, S(1.0), S(0.0));
-    if constexpr (Law::history_vectors > 0) {
+    if constexpr (HasCouples<Law>) {
+      sums.shear_work = sums.shear_work + f.law.work, sums.friction = sums.friction + f.law.loss;
+    } else if constexpr (Law::history_vectors > 0) {
       const Vec<S> mean = (f.law.shear + f.shear_before) * S(0.5);  // trapezoidal rule over the increment
       sums.shear_work = sums.shear_work + dot(mean, inc.slip);
       const S slid = dot(mean, f.law.unslipped - f.law.shear);
       const S kt = f.law.normal.tangential;
-      sums.friction = sums.friction + select(touching & (kt > S(0.0)), slid / max(kt, S(1e-300)), S(0.0));
+      sums.friction = sums.friction + select(touching & (kt > S(0.0)), slid / max(kt, S(1e-300)), S(0.0)) + f.law.loss;
     }
   }
 
@@ -217,6 +244,7 @@ class ForceLoopOf final : public ForceLoop {
     t.force_sum = total(s.force), t.touching = total(s.touching);
     t.stiffness_sum = total(s.stiffness), t.shear_work = total(s.shear_work);
     t.friction = total(s.friction), t.viscous = total(s.viscous);
+    t.pulled = total(s.pulled), t.cut = total(s.cut);
     return t;
   }
 
@@ -239,7 +267,8 @@ Tally ForceLoopOf<Law, rotation>::walls(State& state, ForceWorkspace& work, doub
     const auto motion = wall_motion<double>((body.velocity + outward * body.opening - v.vec()) * dt, turned, p.w);
     const auto inc = increment<rotation>(g, motion);
     const auto& constants = constants_[state.grains.material_of(c.grain) * kinds_ + wall.material];
-    const auto pair = Law::template pair<double>(constants, wall_sizes(p.w));
+    auto pair = Law::template pair<double>(constants, wall_sizes(p.w));
+    pair.friction *= c.friction;
     ContactHistory<Law, double> history;
     std::copy_n(c.history.begin(), history.size(), history.begin());
     const Dashpot<double> dashpot{options.normal_ratio, options.shear_ratio, v.w > 0 ? 1 / v.w : 0,
@@ -249,7 +278,7 @@ Tally ForceLoopOf<Law, rotation>::walls(State& state, ForceWorkspace& work, doub
 
     Quad* row = work.rows.data() + work.stride * c.grain;
     row[0].set(row[0].vec() - f.on_j);
-    if constexpr (rotation) row[1].set(row[1].vec() + f.moment * g.arm_i);
+    if constexpr (rotation) row[1].set(row[1].vec() + f.moment * g.arm_i + f.couple);
     body.force += f.on_j;
     body.spread += dot(f.on_j, outward);
     if (g.overlap > 0) {
@@ -273,7 +302,8 @@ Tally ForceLoopOf<Law, rotation>::walls(State& state, ForceWorkspace& work, doub
 /// The instantiations a law needs; one source file a law calls it.
 template <class Law>
 std::unique_ptr<ForceLoop> make_force_loop_of(bool frictionless, bool rotation) {
-  if (frictionless) return std::make_unique<ForceLoopOf<Frictionless<Law>, false>>();
+  if constexpr (!HasCouples<Law>)
+    if (frictionless) return std::make_unique<ForceLoopOf<Frictionless<Law>, false>>();
   if (rotation) return std::make_unique<ForceLoopOf<Law, true>>();
   return std::make_unique<ForceLoopOf<Law, false>>();
 }

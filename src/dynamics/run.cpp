@@ -10,6 +10,7 @@
 #include "boundary/body_control.hpp"
 #include "boundary/cell_control.hpp"
 #include "state/damping.hpp"
+#include "state/friction.hpp"
 
 namespace eg {
 namespace {
@@ -18,8 +19,7 @@ bool given(double x) { return !std::isnan(x); }
 
 void begin_stage(const Scene& scene, State& state) {
   const StageSpec& stage = scene.stages[state.stage];
-  state.friction.clear();
-  for (const auto& m : scene.materials) state.friction.push_back(stage.friction.value_or(m.friction));
+  state.friction = pair_friction(scene, stage.friction);
   state.stage_step = 0;
   state.stage_time = 0;
   state.cell.strain = state.cell.strain_low = Mat3{};
@@ -39,6 +39,10 @@ void glue(const Scene& scene, State& state, Engine& engine) {
   if (bodies.empty()) return;
   glue_grains(state, bodies);
   engine.renew();
+}
+
+void make_bonds(const Scene& scene, const State& state, Engine& engine) {
+  if (const auto& bond = scene.stages[state.stage].bond) engine.bond(*bond);
 }
 
 /// A cycle ends when its quantity is back at the mean after both limits.
@@ -119,6 +123,7 @@ bool run_stages(const Scene& scene, State& state, StepPolicy& policy, const RunO
   Engine engine(scene, state, scalar);
   if (begins) glue(scene, state, engine);
   apply_stage(scene, state, engine);
+  if (begins) make_bonds(scene, state, engine);
   policy.begin(state);
   std::optional<CellControl> control(std::in_place, scene.stages[state.stage], state, scene.materials.front().density);
   std::optional<BodyControl> bodies(std::in_place, scene, state);
@@ -155,7 +160,7 @@ bool run_stages(const Scene& scene, State& state, StepPolicy& policy, const RunO
     if (ends) {
       if (observer.stage_end) observer.stage_end(state, stage);
       if (++state.stage < scene.stages.size()) {
-        begin_stage(scene, state), apply_stage(scene, state, engine);
+        begin_stage(scene, state), apply_stage(scene, state, engine), make_bonds(scene, state, engine);
         control.emplace(scene.stages[state.stage], state, scene.materials.front().density);
         control->set_rate(state, taken);  // the cell is not to drift on at the rates of the stage before
         glue(scene, state, engine);

@@ -8,13 +8,13 @@
 
 #include "contact/laws.hpp"
 #include "io/boundary_reader.hpp"
+#include "io/grading_reader.hpp"
 #include "io/scene_settings.hpp"
 #include "io/stage_reader.hpp"
 #include "io/stl.hpp"
 #include "io/text_file.hpp"
 #include "io/toml_parse.hpp"
 #include "io/toml_reader.hpp"
-#include "state/grading_preset.hpp"
 
 namespace eg {
 
@@ -34,6 +34,15 @@ Material read_material(const std::string& name, const TomlReader& t) {
   t.number("shear_stiffness", m.shear_stiffness, non_negative);
   t.number("effective_modulus", m.effective_modulus, positive);
   t.number("stiffness_ratio", m.stiffness_ratio, positive);
+  t.number("hertz_exponent", m.hertz_exponent, closed(1, 3));
+  t.number("roughness", m.roughness, non_negative);
+  t.number("rolling_friction", m.rolling_friction, non_negative);
+  t.number("bond_modulus", m.bond_modulus, positive);
+  t.number("bond_stiffness_ratio", m.bond_stiffness_ratio, positive);
+  t.number("bond_radius_ratio", m.bond_radius_ratio, above_up_to(0, 1));
+  t.number("bond_moment_share", m.bond_moment_share, closed(0, 1));
+  t.number("bond_tensile_strength", m.bond_tensile_strength, positive);
+  t.number("bond_shear_strength", m.bond_shear_strength, positive);
   t.finish();
   return m;
 }
@@ -45,6 +54,14 @@ std::string joined(const ConstantSet& set) {
 }
 
 bool given(const Material& m, const MaterialConstant& c) { return !std::isnan(m.*c.value); }
+
+void check_further_constants(const Material& m, const TomlReader& t, const std::string& law) {
+  ConstantSet needed;
+  with_law(law, [&]<class Law>(Law) { needed = further_constants<Law>(); });
+  for (const auto& c : needed)
+    if (!given(m, c))
+      throw t.error("", fmt::format("lacks {} for the law \"{}\"", c.key, law), fmt::format("add {}", c.key));
+}
 
 /// Number of the set of constants that the material gives; throws when it gives none or several.
 std::size_t constants_given(const Material& m, const TomlReader& t, const std::string& law) {
@@ -76,71 +93,40 @@ NamedTables read_materials(const TomlReader& top, Scene& scene) {
   return tables;
 }
 
+PairSpec read_pair(const TomlReader& t, const Scene& scene) {
+  PairSpec pair;
+  std::vector<std::string> names;
+  t.choices("materials", names, material_names(scene), required);
+  if (names.size() != 2)
+    throw t.error("materials", "must name two materials", "the same one twice for its own contacts");
+  pair.first = names[0], pair.second = names[1];
+  t.number("friction", pair.friction, non_negative, required);
+  t.finish();
+  return pair;
+}
+
+void read_friction_scatter(const TomlReader& t, ContactSpec& contact) {
+  t.number("deviation", contact.friction_deviation, closed(0, 1), required);
+  t.choice<bool>("per", contact.friction_by_grain, {{"contact", false}, {"grain", true}}, required);
+  t.finish();
+}
+
 void read_contact(const TomlReader& t, const NamedTables& materials, Scene& scene) {
   t.choice("law", scene.contact.law, law_names(), required);
   t.choice("arms", scene.contact.arms, {"overlap", "radius"});
+  if (const auto scatter = t.table("friction_scatter")) read_friction_scatter(*scatter, scene.contact);
+  for (const auto& pair : t.tables("pair")) scene.contact.pairs.push_back(read_pair(pair, scene));
   t.finish();
   std::size_t set_of_first = 0;
   for (std::size_t k = 0; k < materials.size(); ++k) {
     const auto& table = materials[k].second;
     const auto set = constants_given(scene.materials[k], table, scene.contact.law);
+    check_further_constants(scene.materials[k], table, scene.contact.law);
     if (k == 0) set_of_first = set;
     if (set != set_of_first)
       throw table.error("", fmt::format("gives other constants than material.{}", materials[0].first),
                         "describe all materials by the same constants");
   }
-}
-
-void check_passing(const TomlReader& t, const Grading& g) {
-  if (g.passing.size() < 2) throw t.error("passing", "must hold at least two rows [diameter, passing]");
-  for (std::size_t k = 0; k < g.passing.size(); ++k) {
-    const auto [d, p] = g.passing[k];
-    if (d <= 0) throw t.error("passing", fmt::format("has the diameter {} in row {}, which must be > 0", d, k + 1));
-    if (k > 0 && (d <= g.passing[k - 1][0] || p < g.passing[k - 1][1]))
-      throw t.error("passing", fmt::format("must ascend in diameter and in passing, but row {} does not", k + 1));
-  }
-  if (g.passing.front()[1] != 0 || g.passing.back()[1] != 1)
-    throw t.error("passing", "must run from passing 0 to passing 1", "write fractions of the mass, not per cent");
-}
-
-Grading::Kind kind_of_grading(const TomlReader& t) {
-  const bool table = t.has("passing"), single = t.has("radius"), least = t.has("min_radius"),
-             most = t.has("max_radius");
-  const bool uniform = least || most;
-  t.finish();
-  constexpr std::string_view remedy = "give radius, or min_radius and max_radius, or passing";
-  if (!table && !single && !uniform) throw t.error("", "holds no sizes", remedy);
-  if (table + single + uniform > 1) throw t.error(single ? "radius" : "passing", "is not the only size given", remedy);
-  return table ? Grading::Kind::table : single ? Grading::Kind::single : Grading::Kind::uniform;
-}
-
-Grading read_grading(const TomlReader& specimen) {
-  if (specimen.is_text("grading")) {
-    std::string name;
-    specimen.choice("grading", name, grading_preset_names());
-    return *grading_preset(name);
-  }
-  const auto t = *specimen.table("grading", required);
-  Grading g;
-  g.kind = kind_of_grading(t);
-  switch (g.kind) {
-    case Grading::Kind::table:
-      t.pairs("passing", g.passing);
-      check_passing(t, g);
-      g.min_radius = g.passing.front()[0] / 2, g.max_radius = g.passing.back()[0] / 2;
-      break;
-    case Grading::Kind::single:
-      t.number("radius", g.min_radius, positive);
-      g.max_radius = g.min_radius;
-      break;
-    case Grading::Kind::uniform:
-      t.number("min_radius", g.min_radius, positive, required);
-      t.number("max_radius", g.max_radius, positive, required);
-      if (g.max_radius < g.min_radius) throw t.error("max_radius", "must not be below min_radius");
-      break;
-  }
-  t.finish();
-  return g;
 }
 
 void read_lattice(const TomlReader& t, int dimension, SpecimenSpec& s) {
@@ -169,8 +155,15 @@ void read_lattice(const TomlReader& t, int dimension, SpecimenSpec& s) {
 }
 
 void read_cloud(const TomlReader& t, int dimension, SpecimenSpec& s) {
-  t.integer("count", s.count, closed(1, 4e9), required);
+  const bool coarse = t.integer("coarse_count", s.coarse_count, closed(1, 4e9));
+  t.integer("count", s.count, closed(1, 4e9), coarse ? Need::optional : required);
+  if (coarse && t.has("count")) throw t.error("coarse_count", "contradicts count", "keep one of the two");
   s.grading = read_grading(t);
+  if (coarse && !s.grading.gap)
+    throw t.error("coarse_count", "counts the coarse grains of a gap grading, which this is not",
+                  "give count, or grading = { coarse = …, fines = …, fines_content = … }");
+  double scale = 1;
+  if (t.number("scale", scale, positive)) s.grading.scale(scale);
   t.number("solid_fraction", s.solid_fraction, open(0, dimension == 3 ? 0.7 : 0.9));  // below dense packings
   t.numbers("aspect", std::span(s.aspect).first(static_cast<std::size_t>(dimension)), positive);
 }

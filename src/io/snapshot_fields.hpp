@@ -44,13 +44,16 @@ void visit_grains(Archive& a, G& grains) {
 
 template <class Archive, class C>
 void visit_contacts(Archive& a, C& contacts) {
-  [[maybe_unused]] auto& [i, j, image, history, chunk_begin, history_size, history_vectors, tail_vectors] = contacts;
+  [[maybe_unused]] auto& [i, j, image, history, friction, chunk_begin, history_size, history_vectors, bond_value,
+                          tail_vectors] = contacts;
   a.array("contacts/i", "-", i);
   a.array("contacts/j", "-", j);
   a.array("contacts/image", "-", image);
   a.array("contacts/chunk_begin", "-", chunk_begin);
   a.value("contacts/history_vectors", "-", history_vectors);
+  a.value("contacts/bond_value", "-", bond_value);
   a.value("contacts/tail_vectors", "-", tail_vectors);
+  a.array("contacts/friction", "-", friction);
   a.history("contacts/history", "N", contacts);  // a row a contact, whatever the blocks in memory; sets history_size
 }
 
@@ -144,13 +147,15 @@ void visit_walls(Archive& a, W& walls) {
 
 template <class Archive, class W>
 void visit_wall_contacts(Archive& a, W& contacts) {
-  [[maybe_unused]] const auto [grain, wall, history] = WallContact{};  // all its fields
+  [[maybe_unused]] const auto [grain, wall, history, friction] = WallContact{};  // all its fields
   a.column(
       "wall_contacts/grain", "-", contacts, [](auto& c) -> auto& { return c.grain; });
   a.column(
       "wall_contacts/wall", "-", contacts, [](auto& c) -> auto& { return c.wall; });
   a.column(
       "wall_contacts/history", "N", contacts, [](auto& c) -> auto& { return c.history; });
+  a.column(
+      "wall_contacts/friction", "-", contacts, [](auto& c) -> auto& { return c.friction; });
 }
 
 template <class Archive, class G>
@@ -196,13 +201,29 @@ void visit_plan(Archive& a, P& plan) {
   a.array("policy/grain_bound", "1/s^2", grain);
 }
 
+template <class Archive, class F>
+void visit_friction_scatter(Archive& a, F& scatter) {
+  auto& [deviation, by_grain, seed] = scatter;
+  a.value("friction_scatter/deviation", "-", deviation);
+  a.value("friction_scatter/by_grain", "-", by_grain);
+  a.value("friction_scatter/seed", "-", seed);
+}
+
+template <class Archive, class B>
+void visit_bonds(Archive& a, B& bonds) {
+  auto& [made, pulled, cut] = bonds;
+  a.value("bonds/made", "-", made);
+  a.value("bonds/pulled", "-", pulled);
+  a.value("bonds/cut", "-", cut);
+}
+
 /// Archive has value(name, unit, number or array of numbers), array(name, unit, vector), column(name, unit, vector of
 /// structures, projection) and history(name, unit, contacts); S is State or const State.
 template <class Archive, class S>
 void visit_state(Archive& a, S& state) {
   auto& [dimension, time, step, dt, cell, grains, contacts, list, bodies, walls, spokes, wall_contacts, glued, virial,
-         stiffness_sum, ledger, friction, stage, stage_step, stage_time, unbalanced, kinetic, policy, servo, cycle] =
-      state;
+         stiffness_sum, ledger, friction, friction_scatter, bonds, stage, stage_step, stage_time, unbalanced, kinetic,
+         policy, servo, cycle] = state;
   a.value("dimension", "-", dimension);
   a.value("time", "s", time);
   a.value("step", "-", step);
@@ -222,6 +243,8 @@ void visit_state(Archive& a, S& state) {
   a.value("stiffness_sum", "J", stiffness_sum);
   visit_ledger(a, ledger);
   a.array("friction", "-", friction);
+  visit_friction_scatter(a, friction_scatter);
+  visit_bonds(a, bonds);
   a.value("stage/number", "-", stage);
   a.value("stage/step", "-", stage_step);
   a.value("stage/time", "s", stage_time);

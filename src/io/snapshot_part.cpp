@@ -42,6 +42,7 @@ void keep_own(const Hdf5Reader& file, std::size_t first, std::size_t last, std::
   Contacts& all = state.contacts;
   Contacts own;
   own.history_size = all.history_size, own.history_vectors = all.history_vectors, own.tail_vectors = all.tail_vectors;
+  own.bond_value = all.bond_value;
   std::vector<std::size_t> kept;
   for (std::size_t c = 0; c < all.size(); ++c)
     if (!all.is_padding(c) && all.i[c] >= first && all.i[c] < last) kept.push_back(c);
@@ -51,6 +52,7 @@ void keep_own(const Hdf5Reader& file, std::size_t first, std::size_t last, std::
     own.i.push_back(all.i[c] - static_cast<Index>(first));
     own.j.push_back(all.j[c]);
     if (!all.image.empty()) own.image.push_back(all.image[c]);
+    if (!all.friction.empty()) own.friction.push_back(all.friction[c]);
     for (std::size_t k = 0; k < own.history_size; ++k) own.history_at(own.i.size() - 1, k) = all.history_at(c, k);
   }
   all = std::move(own);

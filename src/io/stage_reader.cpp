@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/laws.hpp"
 #include "io/boundary_reader.hpp"
 #include "state/drive.hpp"
 
@@ -214,6 +215,19 @@ void read_record(const TomlReader& t, StageSpec& stage) {
   t.finish();
 }
 
+void read_bond(const TomlReader& t, const Scene& scene, StageSpec& stage) {
+  BondSpec bond;
+  t.number("gap", bond.gap, non_negative, Need::required);
+  t.integer("clusters", bond.clusters, counting);
+  t.finish();
+  bool bonds = false;
+  with_law(scene.contact.law, [&]<class Law>(Law) { bonds = HasBonds<Law>; });
+  if (!bonds)
+    throw t.error("", fmt::format("needs a law with bonds, which \"{}\" is not", scene.contact.law),
+                  "set contact.law = \"linear-parallel-bond\"");
+  stage.bond = bond;
+}
+
 void check_cell(const TomlReader& t, const Scene& scene) {
   if (scene.boundary.kind == BoundarySpec::Kind::periodic) return;
   for (const char* key : {"stress", "strain_rate", "hold", "cycle"})
@@ -231,6 +245,7 @@ StageSpec read_stage(const TomlReader& t, const Scene& scene) {
   check_cell(t, scene);
   t.number("friction", stage.friction, non_negative);
   t.number("local_damping", stage.local_damping, from_below(0, 1));
+  if (const auto bond = t.table("bond")) read_bond(*bond, scene, stage);
   t.number("max_strain_rate", stage.max_strain_rate, positive);
   t.integer("max_steps", stage.max_steps, counting);
 

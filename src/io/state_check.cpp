@@ -84,6 +84,9 @@ void check_grains(const Check& check, const Grains& grains, std::size_t material
 void check_contacts(const Check& check, const Contacts& contacts, std::size_t grains) {
   check.length("contacts/j", contacts.j.size(), contacts.size());
   check.length("contacts/image", contacts.image.size(), contacts.size(), true);
+  check.length("contacts/friction", contacts.friction.size(), contacts.size(), true);
+  check.require(contacts.bond_value == 0 || contacts.bond_value < contacts.history_size, "contacts/bond_value",
+                contacts.bond_value, "must be below the number of history values");
   check.below("contacts/i", contacts.i, grains);
   check.below("contacts/j", contacts.j, grains);
   check.below("contacts/image", contacts.image, Cell::images);
@@ -132,7 +135,7 @@ void check_state(const Scene& scene, const State& state, const std::string& file
   check.below("walls/material", state.walls, scene.materials.size(), [](const Wall& w) { return w.material; });
   check.below("wall_contacts/grain", state.wall_contacts, state.grains.size(), [](const auto& c) { return c.grain; });
   check.below("wall_contacts/wall", state.wall_contacts, state.walls.size(), [](const auto& c) { return c.wall; });
-  check.length("friction", state.friction.size(), scene.materials.size(), true);
+  check.length("friction", state.friction.size(), scene.materials.size() * scene.materials.size(), true);
   check.require(state.stage <= scene.stages.size(), "stage/number", state.stage,
                 fmt::format("must not pass the number of stages, {}", scene.stages.size()));
 }

@@ -48,10 +48,7 @@ double kinetic_energy(const State& state) {
 
 double elastic_energy(std::span<const ContactPoint> contacts) {
   double sum = 0;
-  for (const auto& c : contacts) {
-    sum += c.normal_energy;
-    if (c.normal.tangential > 0) sum += dot(c.shear, c.shear) / (2 * c.normal.tangential);
-  }
+  for (const auto& c : contacts) sum += c.normal_energy + c.shear_energy;
   return sum;
 }
 

@@ -5,6 +5,7 @@
 
 #include "search/grid.hpp"
 #include "search/spatial_sort.hpp"
+#include "state/friction.hpp"
 #include "search/wall_contacts.hpp"
 
 namespace eg {
@@ -97,6 +98,10 @@ void refresh_contacts(State& state) {
   std::array<Vec3, Cell::images> shift;
   for (std::size_t c = 0; c < Cell::images; ++c) shift[c] = state.cell.shift(static_cast<std::uint8_t>(c));
 
+  const auto key_of = [&](std::size_t c) { return Key{old.i[c], old.j[c], old.image_of(c)}; };
+  const auto keep_bonded = [&](std::vector<Row>& to, std::size_t c) {  // however far the grains have moved apart
+    if (old.is_bonded(c)) to.push_back({key_of(c), c});
+  };
   std::vector<std::vector<Row>> rows(chunks);
 #pragma omp parallel for schedule(dynamic) if (chunks >= Contacts::worth_threads)
   for (std::size_t k = 0; k < chunks; ++k) {
@@ -113,16 +118,17 @@ void refresh_contacts(State& state) {
         const double reach = a.w + b.w + list.contact_skin;
         if (dot(branch, branch) >= reach * reach) continue;
         const Key key{static_cast<Index>(i), j, image};
-        const auto old_key = [&] { return Key{old.i[*o], old.j[*o], old.image_of(*o)}; };
-        while (o != order.end() && old_key() < key) ++o;
-        rows[k].push_back({key, o != order.end() && old_key() == key ? *o : ~std::size_t{0}});
+        while (o != order.end() && key_of(*o) < key) keep_bonded(rows[k], *o++);
+        const bool known = o != order.end() && key_of(*o) == key;
+        rows[k].push_back({key, known ? *o++ : ~std::size_t{0}});
       }
+      while (o != order.end() && old.i[*o] == i) keep_bonded(rows[k], *o++);
     }
   }
 
   Contacts fresh;
   fresh.history_size = old.history_size, fresh.history_vectors = old.history_vectors,
-  fresh.tail_vectors = old.tail_vectors;
+  fresh.tail_vectors = old.tail_vectors, fresh.bond_value = old.bond_value;
   fresh.chunk_begin.assign(1, 0);
   constexpr std::size_t lanes = Contacts::lanes;
   for (const auto& r : rows)
@@ -130,12 +136,19 @@ void refresh_contacts(State& state) {
   const std::size_t total = fresh.chunk_begin.back();
   fresh.i.resize(total), fresh.j.resize(total), fresh.image.resize(periodic ? total : 0);
   fresh.history.assign(total * fresh.history_size, 0.0);
+  const bool varies = state.friction_scatter.deviation > 0;
+  fresh.friction.assign(varies ? total : 0, 1.0);
 #pragma omp parallel for schedule(dynamic) if (chunks >= Contacts::worth_threads)
   for (std::size_t k = 0; k < chunks; ++k) {
     std::size_t c = fresh.chunk_begin[k];
     for (const auto& row : rows[k]) {
       fresh.i[c] = row.key.i, fresh.j[c] = row.key.j;
       if (periodic) fresh.image[c] = row.key.image;
+      if (varies)
+        fresh.friction[c] =
+            row.old != ~std::size_t{0} && !old.friction.empty()
+                ? old.friction[row.old]
+                : friction_factor(state.friction_scatter, state.grains.id[row.key.i], state.grains.id[row.key.j]);
       if (row.old != ~std::size_t{0})
         for (std::size_t h = 0; h < fresh.history_size; ++h) fresh.history_at(c, h) = old.history_at(row.old, h);
       ++c;

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/error.hpp"
+#include "state/friction.hpp"
 #include "state/wall_geometry.hpp"
 
 namespace eg {
@@ -45,13 +46,17 @@ class ByX {
       state.step, state.grains.id[grain], wall + 1, x.x, x.y, x.z));
 }
 
+WallContact contact(const State& state, Index grain, Index wall) {
+  return {grain, wall, {}, wall_friction_factor(state.friction_scatter, state.grains.id[grain], wall)};
+}
+
 void add_if_near(const State& state, Index wall_index, Index grain, std::vector<WallContact>& fresh) {
   const Wall& wall = state.walls[wall_index];
   const Quad& p = state.grains.position[grain];
   const double skin = state.list.contact_skin;
   if (!in_window(wall, p.vec(), skin)) return;
   const double overlap = grain_surface(state, wall, p.vec(), p.w, Arms::middle).overlap;
-  if (overlap > -skin) fresh.push_back({grain, wall_index, {}});
+  if (overlap > -skin) fresh.push_back(contact(state, grain, wall_index));
   if (overlap > 2 * p.w && !wall.windowed() && state.grains.velocity[grain].w > 0)
     report_lost(state, grain, wall_index);
 }
@@ -90,7 +95,7 @@ void add_near_part(const State& state, Index w, const ByX& by_x, std::vector<Wal
     const double reach = p.w + skin;
     if (!within(extent, p.vec(), reach)) return;
     if (wall.shape == Wall::face && std::abs(dot(p.vec() - wall.point, wall.normal)) > reach) return;
-    fresh.push_back({g, w, {}});
+    fresh.push_back(contact(state, g, w));
   });
   std::sort(fresh.begin() + static_cast<std::ptrdiff_t>(before), fresh.end(),
             [](const WallContact& a, const WallContact& b) { return a.grain < b.grain; });

@@ -74,6 +74,13 @@ std::vector<double> draw_radii(const Grading& grading, int dimension, std::size_
   return radii;
 }
 
+std::size_t count_with_coarse(const Grading& grading, int dimension, std::size_t coarse) {
+  const auto intervals = sieves(grading, dimension);
+  double total = 0;
+  for (const auto& sieve : intervals) total += sieve.number;
+  return static_cast<std::size_t>(std::llround(static_cast<double>(coarse) * total / intervals.back().number));
+}
+
 std::vector<double> passing_by_mass(std::span<const double> radii, int dimension, std::span<const double> diameters) {
   std::vector<double> passing(diameters.size());
   double total = 0;

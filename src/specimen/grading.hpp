@@ -18,6 +18,9 @@ namespace eg {
 /// d⁻³ (3D) or d⁻² (2D) there. The table must run from passing 0 to 1 (Grading, state/scene.hpp).
 std::vector<double> draw_radii(const Grading&, int dimension, std::size_t count, Random&);
 
+/// How many grains of a gap grading hold `coarse` coarse ones, to the nearest.
+std::size_t count_with_coarse(const Grading&, int dimension, std::size_t coarse);
+
 /// Fraction of the mass of grains with diameter ≤ each of `diameters` [m], for grains of one density.
 std::vector<double> passing_by_mass(std::span<const double> radii, int dimension, std::span<const double> diameters);
 

@@ -70,8 +70,10 @@ Packing lattice_packing(const Scene& scene, Random& random) {
 
 Packing cloud_packing(const Scene& scene, Random& random) {
   const auto& spec = scene.specimen;
-  if (spec.count == 0) throw input_error(scene.file, 0, "specimen.count = 0", "must be at least 1");
-  const auto radii = draw_radii(spec.grading, scene.dimension, spec.count, random);
+  const std::size_t count =
+      spec.coarse_count > 0 ? count_with_coarse(spec.grading, scene.dimension, spec.coarse_count) : spec.count;
+  if (count == 0) throw input_error(scene.file, 0, "specimen.count = 0", "must be at least 1");
+  const auto radii = draw_radii(spec.grading, scene.dimension, count, random);
   return make_cloud(radii,
                     {.dimension = scene.dimension,
                      .solid_fraction = spec.solid_fraction,

@@ -11,6 +11,7 @@
 #include "contact/laws.hpp"
 #include "specimen/lattice.hpp"
 #include "specimen/make_walls.hpp"
+#include "state/friction.hpp"
 
 namespace eg {
 
@@ -74,10 +75,8 @@ Grains make_grains(const Scene& scene, const Packing& packing, const Cell& cell)
 
 /// Whether any contact can turn a grain: by friction, or by couples of a law that keeps more than the shear force.
 bool grains_can_turn(const Scene& scene) {
-  bool turn = false;
-  with_law(scene.contact.law, [&](auto law) { turn = law.history_vectors > 1 || law.history_scalars > 0; });
-  for (const auto& material : scene.materials) turn = turn || material.friction > 0;
-  for (const auto& stage : scene.stages) turn = turn || stage.friction.value_or(0) > 0;
+  bool turn = has_friction(scene);
+  with_law(scene.contact.law, [&](auto law) { turn = turn || law.history_vectors > 1 || law.history_scalars > 0; });
   return turn && scene.rotation;
 }
 
@@ -110,7 +109,8 @@ State make_state(const Scene& scene, const Packing& packing) {
   state.grains = make_grains(scene, packing, state.cell);
   fit_rotation(scene, state);
   make_walls(scene, packing.box, state);
-  for (const auto& material : scene.materials) state.friction.push_back(material.friction);
+  state.friction = pair_friction(scene);
+  state.friction_scatter = friction_scatter(scene);
   return state;
 }
 

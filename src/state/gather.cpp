@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "contact/laws.hpp"
+#include "state/friction.hpp"
 #include "state/wall_geometry.hpp"
 
 namespace eg {
@@ -16,13 +17,10 @@ template <class Law>
 class Gatherer {
  public:
   Gatherer(const Scene& scene, const State& state)
-      : state_(state), kinds_(scene.materials.size()), arms_(arms_of(scene)) {
-    for (std::size_t a = 0; a < kinds_; ++a)
-      for (std::size_t b = 0; b < kinds_; ++b) {
-        Material ma = scene.materials[a], mb = scene.materials[b];
-        if (!state.friction.empty()) ma.friction = state.friction[a], mb.friction = state.friction[b];
-        constants_.push_back(Law::constants(ma, mb, scene.dimension));
-      }
+      : state_(state),
+        kinds_(scene.materials.size()),
+        arms_(arms_of(scene)),
+        constants_(pair_constants<Law>(scene.materials, friction_in_force(scene, state), scene.dimension)) {
     if (!state.glued.empty()) glued_to_.assign(state.grains.size(), no_index);
     for (const auto& g : state.glued) glued_to_[g.grain] = g.body;
   }
@@ -36,10 +34,11 @@ class Gatherer {
     p.i = list.i[c], p.j = list.j[c], p.entry = c;
     p.branch = g.position[p.j].vec() + state_.cell.shift(list.image_of(c)) - g.position[p.i].vec();
     p.geometry = grain_grain(p.branch, g.radius(p.i), g.radius(p.i) + g.radius(p.j), arms_);
-    if (list.history_vectors > 0) p.shear = {list.history_at(c, 0), list.history_at(c, 1), list.history_at(c, 2)};
-    const auto pair = Law::template pair<double>(constants_[g.material_of(p.i) * kinds_ + g.material_of(p.j)],
-                                                 grain_sizes(g.radius(p.i), g.radius(p.j)));
-    respond(p, pair, visit, growth);
+    auto pair = Law::template pair<double>(constants_[g.material_of(p.i) * kinds_ + g.material_of(p.j)],
+                                           grain_sizes(g.radius(p.i), g.radius(p.j)));
+    if (!list.friction.empty()) pair.friction *= list.friction[c];
+    respond(
+        p, pair, [&](std::size_t h) { return list.history_at(c, h); }, visit, growth);
   }
 
   void wall(std::size_t c, const std::function<void(const ContactPoint&)>& visit, const OverlapGrowth& growth) const {
@@ -52,37 +51,50 @@ class Gatherer {
     p.geometry = grain_wall(state_, wall, g.position[p.i].vec(), radius, arms_);
     p.branch = p.geometry.n * (radius - p.geometry.overlap);
     if (state_.bodies[wall.body].yields) p.give = yielding;
-    if (state_.contacts.history_vectors > 0) p.shear = {contact.history[0], contact.history[1], contact.history[2]};
-    respond(p, Law::template pair<double>(constants_[g.material_of(p.i) * kinds_ + wall.material], wall_sizes(radius)),
-            visit, growth);
+    auto pair = Law::template pair<double>(constants_[g.material_of(p.i) * kinds_ + wall.material], wall_sizes(radius));
+    pair.friction *= contact.friction;
+    respond(
+        p, pair, [&](std::size_t h) { return contact.history[h]; }, visit, growth);
   }
 
  private:
-  void respond(ContactPoint& p, const typename Law::template Pair<double>& pair,
+  template <class History>
+  void respond(ContactPoint& p, const typename Law::template Pair<double>& pair, const History& stored,
                const std::function<void(const ContactPoint&)>& visit, const OverlapGrowth& growth) const {
     p.reach = p.geometry.overlap;
     if (growth) p.reach = foreseen(p.geometry.overlap, growth(p), pair);
-    if (!(p.reach > 0)) return;
-    p.normal = Law::template normal<double>(pair, p.reach);
-    if (state_.contacts.history_vectors == 0) p.normal.tangential = 0;  // a frictionless scene has no shear
-    p.normal_energy = Law::normal_energy(pair, p.reach);
+    bool acts = p.reach > 0;
+    if constexpr (HasBonds<Law>) acts = acts || stored(Law::bond_value) > 0;
+    if (!acts) return;
+    Standing s;
+    if (state_.contacts.history_vectors == 0) {
+      s = standing_springs<Frictionless<Law>>(pair, p.reach, {});
+    } else if constexpr (HasCouples<Law>) {
+      ContactHistory<Law, double> history;
+      for (std::size_t h = 0; h < history.size(); ++h) history[h] = stored(h);
+      s = Law::at_rest(pair, p.reach, history);
+    } else {
+      s = standing_springs<Law>(pair, p.reach, {stored(0), stored(1), stored(2)});
+    }
+    p.normal = s.normal, p.shear = s.shear, p.rolling = s.rolling, p.twisting = s.twisting;
+    p.normal_energy = s.normal_energy, p.shear_energy = s.shear_energy, p.bonded = s.bonded;
     p.limit = pair.friction * p.normal.force;
     visit(p);
   }
 
-  /// The overlap grown, but no further than to where the energy is taken up. With U ~ δ^q, q = Nδ/U, the step back is
-  /// exact for the power laws of springs and Hertz contacts; others come near in a few.
+  /// The overlap grown, but no further than to where the energy is taken up. With U ~ δ^q, q = Nδ/U, a step is exact
+  /// for the power laws of springs and Hertz contacts; others come near in a few, from either side.
   static double foreseen(double overlap, const OverlapForecast& f, const typename Law::template Pair<double>& pair) {
     double reach = overlap + f.growth;
     if (!(reach > 0) || !std::isfinite(f.energy)) return reach;
     const double most = f.energy + (overlap > 0 ? 2 * Law::normal_energy(pair, overlap) : 0.0);
-    for (int step = 0; step < 4; ++step) {
-      const double stored = Law::normal_energy(pair, reach);
-      if (stored <= most * (1 + 1e-6)) break;
+    double stored = Law::normal_energy(pair, reach);
+    for (int step = 0; step < 6 && (step > 0 || stored > most) && std::abs(stored - most) > 1e-6 * most; ++step) {
       const double force = Law::template normal<double>(pair, reach).force;
-      reach = std::max(overlap + f.driven, reach * std::pow(most / stored, stored / (force * reach)));
+      reach *= std::pow(most / stored, stored / (force * reach));
+      stored = Law::normal_energy(pair, reach);
     }
-    return reach;
+    return std::max(reach, overlap + std::min(f.driven, f.growth));
   }
 
   bool glued_gives(Index grain) const { return glued_to_[grain] != no_index && state_.bodies[glued_to_[grain]].yields; }

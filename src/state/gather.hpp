@@ -22,10 +22,13 @@ struct ContactPoint {
   Vec3 shear;                     ///< T [N], acts on i as +T; force on j is N n − T
   double limit = 0;               ///< µN [N]
   double give = 1;                ///< by how much stiffer it counts in a bound of the step, its body answering forces
-  double normal_energy = 0;       ///< [J]
+  double rolling = 0, twisting = 0;            ///< stiffness against rotation of j against i, across, about n [N m]
+  double normal_energy = 0, shear_energy = 0;  ///< stored in the normal spring and in all others [J]
+  bool bonded = false;
 
   Vec3 force() const { return geometry.n * normal.force - shear; }  ///< on j [N]
-  bool sliding() const { return norm(shear) >= limit * (1 - 1e-9); }
+  bool has_couple() const { return rolling > 0 || twisting > 0; }
+  bool sliding() const { return !bonded && norm(shear) >= limit * (1 - 1e-9); }
 };
 
 /// What may press a pair further than it is now.
@@ -37,8 +40,8 @@ struct OverlapForecast {
 /// Asked of every listed contact; of the point it is shown, all up to `geometry` is set.
 using OverlapGrowth = std::function<OverlapForecast(const ContactPoint&)>;
 
-/// Calls visit for every contact that touches (with `growth`: that may come to touch; N, kn and kt are then those of
-/// the overlap foreseen). Order: grain contacts as listed, then walls.
+/// Calls visit for every contact that touches or is bonded (with `growth`: that may come to touch; N, kn and kt are
+/// then those of the overlap foreseen). Order: grain contacts as listed, then walls.
 void visit_contacts(const Scene& scene, const State& state, const std::function<void(const ContactPoint&)>& visit,
                     const OverlapGrowth& growth = {});
 

@@ -13,10 +13,19 @@ namespace eg {
 
 inline constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
 
+/// [[contact.pair]]: what two materials have together and neither of them tells.
+struct PairSpec {
+  std::string first, second;  ///< names of [material.*]
+  double friction = 0;        ///< µ [-]
+};
+
 /// [contact]
 struct ContactSpec {
   std::string law = "hertz-mindlin";  ///< a name of contact/laws.hpp
   std::string arms = "overlap";       ///< "overlap": a = R − δ/2 (default); "radius": a = R, as LAMMPS gran/*
+  std::vector<PairSpec> pairs;
+  double friction_deviation = 0;   ///< standard deviation of µ over its mean [-]
+  bool friction_by_grain = false;  ///< a µ for each grain, the smaller one counts; else one for each contact
 };
 
 /// Sizes of grains. [specimen] grading = …
@@ -25,6 +34,12 @@ struct Grading {
   Kind kind = Kind::single;
   double min_radius = 0, max_radius = 0;       ///< [m], single: both the same; uniform: by number
   std::vector<std::array<double, 2>> passing;  ///< table: {diameter [m], passing by mass [0..1]}, ascending
+  bool gap = false;                            ///< table of two ranges, fines and coarse grains, with nothing between
+
+  void scale(double factor) {  ///< of all sizes
+    min_radius *= factor, max_radius *= factor;
+    for (auto& [diameter, share] : passing) diameter *= factor;
+  }
 };
 
 /// [specimen]
@@ -40,6 +55,7 @@ struct SpecimenSpec {
   double radius_scatter = 0;    ///< standard deviation over mean radius [-], normal, cut at ±3 SD
   // cloud
   std::size_t count = 0;
+  std::size_t coarse_count = 0;  ///< instead of count, gap gradings: of the coarse grains
   Grading grading;
   double solid_fraction = 0.3;            ///< of the cloud, before any compression
   std::array<double, 3> aspect{1, 1, 1};  ///< edges of the box relative to x
@@ -154,9 +170,16 @@ struct BodyDrive {
   std::array<bool, 3> free{};    ///< axes along which the forces of the grains accelerate it
 };
 
+/// Bonds made at the beginning of a stage.
+struct BondSpec {
+  double gap = 0;            ///< between all grains nearer than this [m]
+  std::size_t clusters = 0;  ///< only within so many clusters of grains; 0: between all
+};
+
 /// [[stage]]
 struct StageSpec {
   std::string name;
+  std::optional<BondSpec> bond;
   std::optional<double> friction;       ///< replaces every material's friction during this stage
   std::optional<double> local_damping;  ///< replaces damping.local during this stage
   // strain: axes x, y, z, then yz, xz, xy (engineering shear rate, for a cell with tilt)

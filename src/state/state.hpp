@@ -36,10 +36,12 @@ struct Contacts {
   std::vector<Index> i, j;
   std::vector<std::uint8_t> image;  ///< code of Cell::shift; empty when no direction is periodic
   std::vector<double> history;      ///< blocks [value][lane] of eight contacts; vectors first (shear force on i [N])
+  std::vector<double> friction;     ///< factor on µ, one a contact; empty where µ does not vary
   std::vector<std::uint64_t>
       chunk_begin;                  ///< contacts of chunk k: [chunk_begin[k], chunk_begin[k+1]), multiples of `lanes`
   std::size_t history_size = 0;     ///< values a contact, fixed by the law
   std::size_t history_vectors = 0;  ///< how many 3-vectors lead them
+  std::size_t bond_value = 0;       ///< which value is > 0 while a bond holds; 0: a law without bonds
   std::size_t tail_vectors = 0;     ///< how many 3-vectors end them (dashpot force [N], only with an energy ledger)
 
   std::size_t size() const { return i.size(); }
@@ -51,6 +53,19 @@ struct Contacts {
   double history_at(std::size_t c, std::size_t k) const {
     return history[(c / lanes * history_size + k) * lanes + c % lanes];
   }
+  bool is_bonded(std::size_t c) const { return bond_value > 0 && history_at(c, bond_value) > 0; }
+};
+
+/// How friction varies about the µ of a pair of materials (state/friction.hpp).
+struct FrictionScatter {
+  double deviation = 0;   ///< standard deviation over mean [-]; 0: none
+  bool by_grain = false;  ///< of each grain, the smaller one of two counts; else of each contact
+  std::uint64_t seed = 0;
+};
+
+/// Bonds since the beginning of the run.
+struct BondCount {
+  std::uint64_t made = 0, pulled = 0, cut = 0;  ///< made; broken by tension, by shear
 };
 
 /// Work and dissipation so far [J] (2D: per metre of thickness). Kept only when Scene::energy.
@@ -112,8 +127,10 @@ struct State {
   Mat3 virial;               ///< Σ f ⊗ branch over contacts of the last step, f on j [J]; stress is virial/volume
   double stiffness_sum = 0;  ///< Σ kn d² over contacts of the last step [J]
   EnergyLedger ledger;
-  std::vector<double> friction;  ///< µ in force per material (a stage may have replaced the scene's)
-  std::size_t stage = 0;         ///< stage under way, and the state it began from
+  std::vector<double> friction;  ///< µ in force of every pair of materials, row after row (state/friction.hpp)
+  FrictionScatter friction_scatter;
+  BondCount bonds;
+  std::size_t stage = 0;  ///< stage under way, and the state it began from
   std::uint64_t stage_step = 0;
   double stage_time = 0;
   double unbalanced = 1;  ///< mean net force over mean contact force at the last check [-]

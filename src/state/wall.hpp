@@ -51,7 +51,8 @@ struct Wall {
 
 struct WallContact {
   Index grain = 0, wall = 0;
-  std::array<double, 8> history{};  ///< as Contacts::history, seen from the grain as i and the wall as j
+  std::array<double, 16> history{};  ///< as Contacts::history, seen from the grain as i and the wall as j
+  double friction = 1;               ///< factor on µ
 };
 
 /// A grain that moves with a body and does not turn. Its mass is taken as infinite.

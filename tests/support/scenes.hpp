@@ -17,12 +17,24 @@ inline Material linear_material(double kn, double ks, double density = 2650, dou
   return m;
 }
 
-/// A scene whose one material has what the law needs (quartz-like spheres; springs of equal order of stiffness).
+/// Quartz-like spheres with springs of the same order of stiffness: the constants of every law.
+inline Material any_material() {
+  Material m = hertz_material();
+  m.normal_stiffness = 1e6, m.shear_stiffness = 7e5;
+  m.hertz_exponent = 1.45, m.roughness = 0.2e-6;
+  m.rolling_friction = 0.2;
+  m.bond_modulus = 1e9, m.bond_stiffness_ratio = 2, m.bond_radius_ratio = 1, m.bond_moment_share = 0.5;
+  m.bond_tensile_strength = 2e6, m.bond_shear_strength = 3e6;
+  return m;
+}
+
+/// A scene whose one material has what the law needs.
 inline Scene scene_of(const std::string& law, int dimension = 3) {
   Scene s;
   s.dimension = dimension;
   s.contact.law = law;
-  s.materials = {law == "linear" ? linear_material(1e6, 7e5) : hertz_material()};
+  s.materials = {any_material()};
+  if (law.starts_with("linear")) s.materials[0].friction = 0.5;
   return s;
 }
 

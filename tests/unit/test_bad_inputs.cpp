@@ -98,7 +98,8 @@ const std::vector<SceneCase> scene_cases{
      "record, rotation, seed, settings, specimen, stage, timestep, title"},
     {7, "[contct]", "s.toml:7: contct is not a known key; did you mean \"contact\"?"},
     {11, "count = 100\ncells = [1, 1, 1]",
-     "s.toml:12: specimen.cells is not a known key; known here: aspect, count, grading, solid_fraction, source"},
+     "s.toml:12: specimen.cells is not a known key; known here: aspect, coarse_count, count, grading, "
+     "scale, solid_fraction, source"},
     {20, "until = { stress_eror = 1e-3 }",
      "s.toml:20: stage[1].until.stress_eror is not a known key; did you mean \"stress_error\"?"},
     {20, "", "s.toml:17: stage[1].until is missing; add \"until\" to [stage[1]]"},
@@ -139,8 +140,10 @@ const std::vector<SceneCase> scene_cases{
     {20, "until = { steps = 0 }", "s.toml:20: stage[1].until.steps = 0 must lie in [1, 1000000000000000]"},
     // names
     {8, "law = \"hertz-mindlim\"",
-     "s.toml:8: contact.law = \"hertz-mindlim\" must be one of \"linear\", \"hertz-mindlin\", "
-     "\"hertz-mindlin-rescale\"; did you mean \"hertz-mindlin\"?"},
+     "s.toml:8: contact.law = \"hertz-mindlim\" must be one of \"linear\", "
+     "\"linear-incremental\", \"hertz-mindlin\", \"hertz-mindlin-rescale\", \"hertz-mindlin-exponent\", "
+     "\"hertz-mindlin-deresiewicz\", \"rough-hertz-mindlin\", \"rough-hertz-mindlin-deresiewicz\", "
+     "\"linear-rolling\", \"linear-parallel-bond\"; did you mean \"hertz-mindlin\"?"},
     {10, "source = \"rain\"", "s.toml:10: specimen.source = \"rain\" must be one of \"lattice\", \"cloud\", \"file\""},
     {12, "grading = \"ottawa\"", "s.toml:12: specimen.grading = \"ottawa\" must be one of \"toyoura\""},
     {14, "type = \"wall\"", "s.toml:14: boundary.type = \"wall\" must be one of \"periodic\", \"free\", \"box\""},
@@ -173,12 +176,28 @@ const std::vector<SceneCase> scene_cases{
     {12, "grading = { max_radius = 1e-3 }",
      "s.toml:12: specimen.grading.min_radius is missing; add \"min_radius\" to [specimen.grading]"},
     {12, "grading = { diameter = 1e-3 }",
-     "s.toml:12: specimen.grading.diameter is not a known key; known here: max_radius, min_radius, passing, radius"},
+     "s.toml:12: specimen.grading.diameter is not a known key; known here: coarse, fines, fines_content, "
+     "max_radius, min_radius, passing, radius"},
     {12, "grading = {}",
-     "s.toml:12: specimen.grading holds no sizes; give radius, or min_radius and max_radius, or passing"},
+     "s.toml:12: specimen.grading holds no sizes; give radius, or min_radius and max_radius, or passing, or coarse, "
+     "fines and fines_content"},
     {12, "grading = { radius = 1e-3, max_radius = 1e-3 }",
-     "s.toml:12: specimen.grading.radius = 0.001 is not the only size given; give radius, or min_radius and "
-     "max_radius, or passing"},
+     "s.toml:12: specimen.grading.max_radius = 0.001 is not the only size given; give radius, or min_radius and "
+     "max_radius, or passing, or coarse, fines and fines_content"},
+    {12, "grading = { coarse = [2e-3, 3e-3], fines = [2e-4, 3e-4] }",
+     "s.toml:12: specimen.grading.fines_content is missing; add \"fines_content\" to [specimen.grading]"},
+    {12, "grading = { coarse = [2e-3, 3e-3], fines = [2e-4, 3e-4], fines_content = 25 }",
+     "s.toml:12: specimen.grading.fines_content = 25 must lie in (0, 1)"},
+    {12, "grading = { coarse = [2e-3, 2e-3], fines = [2e-4, 3e-4], fines_content = 0.25 }",
+     "s.toml:12: specimen.grading.coarse must be [smallest, largest] diameter; for one size give a narrow range"},
+    {12, "grading = { coarse = [2e-4, 3e-4], fines = [2e-3, 3e-3], fines_content = 0.25 }",
+     "s.toml:12: specimen.grading.fines must all be smaller than the coarse grains"},
+    {12, "grading = { radius = 1e-3 }\nscale = 0", "s.toml:13: specimen.scale = 0 must be finite and > 0"},
+    {12, "grading = { radius = 1e-3 }\ncoarse_count = 20",
+     "s.toml:13: specimen.coarse_count = 20 contradicts count; keep one of the two"},
+    {11, "coarse_count = 20",
+     "s.toml:11: specimen.coarse_count = 20 counts the coarse grains of a gap grading, which this is not; give count, "
+     "or grading = { coarse = …, fines = …, fines_content = … }"},
     {14, "type = \"free\"\nwall_material = \"quartz\"",
      "s.toml:15: boundary.wall_material = \"quartz\" is read with type = \"box\" only; remove one of the two"},
     {12, "grading = { min_radius = 2e-3, max_radius = 1e-3 }",

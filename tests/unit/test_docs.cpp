@@ -43,6 +43,7 @@ TEST(Docs, EveryConstantOfEveryLaw) {
     with_law(name, [&](auto law) {
       for (const auto& set : law.constant_sets())
         for (const auto& constant : set) expect_named(text, std::string(constant.key));
+      for (const auto& constant : further_constants<decltype(law)>()) expect_named(text, std::string(constant.key));
     });
   }
 }

@@ -76,7 +76,7 @@ TEST(MakeState, PeriodicSpheres) {
     EXPECT_NEAR(state.grains.spin[i].w * 0.4 * mass * 1e-6, 1, 1e-14);
     EXPECT_EQ(norm(state.grains.velocity[i].vec()), 0);
   }
-  EXPECT_EQ(state.friction, (std::vector{0.25, 0.1}));
+  EXPECT_EQ(state.friction, (std::vector{0.25, 0.1, 0.1, 0.1}));
   EXPECT_TRUE(state.walls.empty());
   EXPECT_EQ(state.contacts.size(), 0u);
 }
@@ -234,4 +234,22 @@ TEST(MakeState, GrainsThatNothingCanTurnHaveNoSpin) {
   EXPECT_EQ(smooth.grains.spin[5].x, 3);  // kept
   scene.rotation = false;
   EXPECT_FALSE(state_of(scene).grains.rotates());
+}
+
+TEST(MakePacking, CountsTheCoarseGrainsOfAGapGrading) {
+  Scene scene = disks(0);
+  scene.dimension = 3;
+  scene.specimen.coarse_count = 60;
+  auto& g = scene.specimen.grading;
+  g.kind = Grading::Kind::table, g.gap = true;
+  g.passing = {{0.45e-3, 0}, {0.55e-3, 0.25}, {1.8e-3, 0.25}, {2.2e-3, 1}};
+  const Packing packing = make_packing(scene);
+  std::size_t coarse = 0;
+  double mass = 0, fines = 0;
+  for (const double r : packing.radius) {
+    coarse += r >= 0.9e-3;
+    mass += r * r * r, fines += r < 0.5e-3 ? r * r * r : 0;
+  }
+  EXPECT_NEAR(static_cast<double>(coarse), 60, 1);
+  EXPECT_NEAR(fines / mass, 0.25, 0.01);
 }

@@ -189,6 +189,20 @@ TEST(SceneFile, ReadsEveryKindOfGrading) {
   EXPECT_EQ(curve.kind, table);
   EXPECT_EQ(curve.passing[1], (std::array{2e-3, 0.4}));
   EXPECT_EQ(curve.max_radius, 2e-3);
+  const auto gap = grading("{ coarse = [2e-3, 4e-3], fines = [0.5e-3, 1e-3], fines_content = 0.3 }");
+  EXPECT_TRUE(gap.gap);
+  EXPECT_EQ(gap.passing, (std::vector<std::array<double, 2>>{{0.5e-3, 0}, {1e-3, 0.3}, {2e-3, 0.3}, {4e-3, 1}}));
+}
+
+TEST(SceneFile, ScalesEveryKindOfGrading) {
+  EXPECT_EQ(grading("{ radius = 1e-3 }\nscale = 4").min_radius, 4e-3);
+  EXPECT_EQ(grading("{ min_radius = 1e-3, max_radius = 2e-3 }\nscale = 4").max_radius, 8e-3);
+  const auto sand = grading("\"toyoura\""), coarser = grading("\"toyoura\"\nscale = 4");
+  for (std::size_t k = 0; k < sand.passing.size(); ++k) {
+    EXPECT_EQ(coarser.passing[k][0], 4 * sand.passing[k][0]);
+    EXPECT_EQ(coarser.passing[k][1], sand.passing[k][1]);
+  }
+  EXPECT_EQ(coarser.max_radius, 4 * sand.max_radius);
 }
 
 TEST(SceneFile, TextsAndCommentsMayHoldAnyLetter) {

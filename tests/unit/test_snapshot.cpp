@@ -28,7 +28,7 @@ class Scramble {
  public:
   void value(const std::string&, const std::string&, auto& x) { fill(x); }
   void array(const std::string& name, const std::string&, auto& all) {
-    if (name == "friction") all.resize(2);
+    if (name == "friction") all.resize(4);
     for (auto& x : all) fill(x);
   }
   void column(const std::string&, const std::string&, auto& all, auto field) {

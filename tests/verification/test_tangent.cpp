@@ -70,13 +70,13 @@ State loaded(const Scene& scene, double mobilised, std::uint64_t seed) {
       else
         state.contacts.history_at(p.entry, h) = t[k];
     }
-  if (state.contacts.history_size >
-      3)  // rescaling has a kink between loading and unloading: stand on the unloading side
-    for (const auto& [p, t] : set) {
+  const std::size_t scalar = 3 * state.contacts.history_vectors;
+  if (scene.contact.law == "hertz-mindlin-rescale" || scene.contact.law.ends_with("deresiewicz"))
+    for (const auto& [p, t] : set) {  // a kink between loading and unloading: stand on the unloading side
       if (p.j == no_index)
-        state.wall_contacts[p.entry].history[3] *= 2;
+        state.wall_contacts[p.entry].history[scalar] *= 2;
       else
-        state.contacts.history_at(p.entry, 3) *= 2;
+        state.contacts.history_at(p.entry, scalar) *= 2;
     }
   return state;
 }
@@ -122,8 +122,9 @@ TEST_P(Tangent, ConsistentModeIsTheDerivativeOfTheForces) {
 INSTANTIATE_TEST_SUITE_P(Laws, Tangent, ::testing::ValuesIn([] {
                            std::vector<Case> cases;
                            for (const auto& law : law_names())
-                             for (const double mobilised : {0.0, 0.5, 1.05})  // unloaded, sticking, sliding
-                               for (const int dimension : {2, 3}) cases.push_back({law, mobilised, dimension});
+                             for (const double mobilised : {0.0, 0.5, 1.05})         // unloaded, sticking, sliding
+                               if (mobilised == 0 || !law.ends_with("deresiewicz"))  // its kinks: test_contact_laws
+                                 for (const int dimension : {2, 3}) cases.push_back({law, mobilised, dimension});
                            return cases;
                          }()),
                          [](const auto& info) {

@@ -1,0 +1,140 @@
+#pragma once
+// Hertz–Mindlin–Deresiewicz: a ring of the contact slips before the whole of it does (Mindlin and Deresiewicz 1953).
+#include "base/power.hpp"
+#include "contact/hertz_mindlin.hpp"
+#include "contact/rough_hertz_mindlin.hpp"
+
+namespace eg {
+
+/// Normal force and stick stiffness k0 of `Base`; the shear force follows dT = k0 θ Δs along the curve it is on:
+///   θ³ = 1 − (|T − R| + E)/(m µN),   first loading: R = 0, m = 1;   after a reversal: R the turning point, m = 2.
+/// These are Mindlin and Deresiewicz's load, unload and reload laws with the sign of T replaced by vectors in the
+/// contact plane, so that any path is followed (compare Jäger 2005; Kuhn 2018): a reversal is a step with (T − R)·Δs <
+/// 0. A curve ends, and that of first loading goes on, when |T − R| reaches D: twice |T| of the turning point after a
+/// first reversal, the distance between both turning points after a second one; a third one within a loop takes the
+/// place of the second. Steps at constant N and direction are integrated in closed form: θ² falls linearly in s.
+///
+/// When N grows by ΔN, a force E = Σ µΔN can be carried without slip (θ = 1 until |Δs| > µΔN/k0); when it falls, T
+/// loses µ(1 − θ)|ΔN|. Turning points move outwards by µΔN. A contact that was pressed together further than it has
+/// been sheared since (E > |T − R|) starts anew from its present T, with m = 1, until it has carried E.
+template <class Base>
+struct PartialSlip {
+  static constexpr std::string_view name = Base::partial_slip_name;
+  static constexpr std::size_t history_vectors = 2, history_scalars = 4;  // T, R; N, E, D, whether reversed
+
+  static std::vector<ConstantSet> constant_sets() { return Base::constant_sets(); }
+  template <class S>
+  using Constants = typename Base::template Constants<S>;
+  template <class S>
+  using Pair = typename Base::template Pair<S>;
+  static auto constants(const Material& a, const Material& b, int dimension) {
+    return Base::constants(a, b, dimension);
+  }
+  template <class S>
+  EG_INLINE static Pair<S> pair(const Constants<S>& c, const Sizes<S>& sizes) {
+    return Base::template pair<S>(c, sizes);
+  }
+  template <class S>
+  EG_INLINE static NormalResponse<S> normal(const Pair<S>& p, const S& overlap) {
+    return Base::template normal<S>(p, overlap);
+  }
+  static double normal_energy(const Pair<double>& p, double overlap) { return Base::normal_energy(p, overlap); }
+
+  /// The curve a contact is on.
+  template <class S>
+  struct Curve {
+    Vec<S> origin;  ///< R [N]
+    S stuck;        ///< E ≥ 0 [N]
+    S reach;        ///< D [N]; 0: first loading, which has no end
+    S reversed;     ///< 1 after a reversal, else 0
+  };
+
+  template <class S>
+  EG_INLINE static S length(const Vec<S>& v) {
+    return root(max(dot(v, v), S(1e-60)));
+  }
+
+  /// Effect of N + ΔN, grow = µΔN, on curve and force.
+  template <class S>
+  EG_INLINE static void press(Curve<S>& c, Vec<S>& shear, const S& grow, const S& limit) {
+    const Vec<S> away = shear - c.origin;
+    const S distance = length(away);
+    const Vec<S> unit = away * reciprocal(distance);
+    c.origin -= unit * (grow * c.reversed);
+    c.reach = select(c.reach > S(0.0), c.reach + grow * (S(1.0) + c.reversed), S(0.0));
+    const S stuck = c.stuck + grow, lost = max(-stuck, S(0.0));
+    c.stuck = max(stuck, S(0.0));
+    const S theta = stick_share(c, distance + grow * c.reversed - lost, limit);
+    shear -= unit * min((S(1.0) - theta) * lost, distance);
+  }
+
+  /// θ at a distance |T − R| from the origin of the curve, E included.
+  template <class S>
+  EG_INLINE static S stick_share(const Curve<S>& c, const S& distance, const S& limit) {
+    const S scale = max((S(1.0) + c.reversed) * limit, S(1e-200));
+    const S y = S(1.0) - (distance + c.stuck) / scale;
+    return power(min(max(y, S(1e-9)), S(1.0)), S(1.0 / 3.0));
+  }
+
+  /// T after the slip Δs, before Coulomb's limit.
+  template <class S>
+  EG_INLINE static Vec<S> slide(Curve<S>& c, const Vec<S>& shear, const Vec<S>& slip, const S& k0, const S& limit) {
+    Vec<S> away = shear - c.origin;
+    const auto turns = dot(away, slip) < S(0.0);
+    c.reach = select(turns, length(away) * (S(2.0) - c.reversed), c.reach);
+    c.origin = select(turns, shear, c.origin);
+    c.reversed = select(turns, S(1.0), c.reversed);
+    away = shear - c.origin;
+
+    const S distance = length(away), step = length(slip), scale = max((S(1.0) + c.reversed) * limit, S(1e-200));
+    const S elastic = k0 * step, share = select(elastic > c.stuck, c.stuck / max(elastic, S(1e-200)), S(1.0));
+    const S theta = stick_share(c, distance, limit);
+    c.stuck = max(c.stuck - elastic, S(0.0));
+    const auto apart = distance > S(1e-12) * limit;
+    const S outward = select(apart, max(dot(away, slip), S(0.0)) / distance, step) * (S(1.0) - share);
+    const S next = root(max(theta * theta - S(2.0 / 3.0) * k0 * outward / scale, S(1e-30)));
+    const S mean = S(2.0 / 3.0) * (theta * theta + theta * next + next * next) / (theta + next);
+    return shear + slip * (k0 * (share + (S(1.0) - share) * mean));
+  }
+
+  /// Ends curves that have been followed to their end, or by sliding, and starts anew after pressing.
+  template <class S>
+  EG_INLINE static void close(Curve<S>& c, const Vec<S>& shear, const Vec<S>& trial, const S& limit) {
+    const S zero(0.0), distance = length(shear - c.origin);
+    const auto ended = (distance + c.stuck > c.reach) | (dot(trial, trial) > limit * limit);
+    c.origin = select(ended, Vec<S>{zero, zero, zero}, c.origin);
+    c.reach = select(ended, zero, c.reach), c.reversed = select(ended, zero, c.reversed);
+
+    const S now = length(shear - c.origin);
+    const auto anew = (c.stuck > now) & (c.stuck > select(c.reversed > zero, S(0.05) * limit, zero));
+    c.reach = select(anew, max(c.stuck, c.reach - now), c.reach);
+    c.origin = select(anew, shear, c.origin);
+    c.reversed = select(anew, zero, c.reversed), c.stuck = select(anew, zero, c.stuck);
+  }
+
+  template <class S>
+  EG_INLINE static Response<S> respond(const Pair<S>& p, const Strain<S>& strain, std::array<S, 10>& h) {
+    const auto n = normal<S>(p, strain.overlap);
+    const Vec<S> before = history_vector(h, 0);
+    Curve<S> curve{history_vector(h, 1), h[7], h[8], h[9]};
+    const S limit = p.friction * n.force;
+    Vec<S> shear = before;
+    press(curve, shear, p.friction * (n.force - h[6]), limit);
+    const Vec<S> trial = slide(curve, shear, strain.slip, n.tangential, limit);
+    shear = coulomb(trial, limit);
+    close(curve, shear, trial, limit);
+    set_history_vector(h, 0, shear), set_history_vector(h, 1, curve.origin);
+    h[6] = n.force, h[7] = curve.stuck, h[8] = curve.reach, h[9] = curve.reversed;
+
+    Response<S> r{n, shear, trial};
+    const Vec<S> ring = before + strain.slip * n.tangential - trial;  // T that the slipping ring did not take up
+    r.loss = select(n.tangential > S(0.0), S(0.5) * dot(before + shear, ring) / max(n.tangential, S(1e-300)), S(0.0));
+    return r;
+  }
+};
+
+using HertzMindlinPartialSlip = PartialSlip<HertzMindlin>;
+using RoughPartialSlip = PartialSlip<RoughHertzMindlin>;
+static_assert(ContactLaw<HertzMindlinPartialSlip> && ContactLaw<RoughPartialSlip>);
+
+}  // namespace eg

@@ -1,0 +1,5 @@
+#include "contact/rough_hertz_mindlin.hpp"
+#include "dynamics/force_loop_impl.hpp"
+#include "dynamics/force_loop_of.hpp"
+
+template std::unique_ptr<eg::ForceLoop> eg::make_force_loop_of<eg::RoughHertzMindlin>(bool, bool);
