@@ -282,6 +282,7 @@ double bisected_limit(const Scene& prepared, const State& start, double guess) {
 /// At rest at the end of its last stage, far below what bisected_limit() stirs up.
 State prepared(Scene scene, State state) {
   scene.stages.back().until_unbalanced = 1e-8, scene.stages.back().until_steps = not_given;
+  scene.stages.back().max_steps = 600000;
   run(scene, state);
   state.stage = scene.stages.size() - 1;
   return state;
