@@ -59,6 +59,10 @@ void add_stress_columns(Columns& c, int dimension, const std::string& pressure) 
   c.push_back({{"mean_stress", pressure}, [](const RowSource& r) { return mean_stress(r.state); }});
   c.push_back({{"deviator", pressure},
                [](const RowSource& r) { return deviator(contact_stress(r.state), r.scene.dimension); }});
+  for (std::size_t k = 0; k < static_cast<std::size_t>(dimension); ++k)
+    c.push_back({{fmt::format("stress_{}", k + 1), pressure}, [k, dimension](const RowSource& r) {
+                   return principal(contact_stress(r.state), dimension).values[k];
+                 }});
 }
 
 void add_fabric_columns(Columns& c, int dimension) {

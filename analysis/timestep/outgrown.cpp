@@ -15,6 +15,13 @@ double fastest_wall(const State& state) {
   return speed;
 }
 
+/// Velocity gradient by which surfaces close in: that of the cell, and radii that grow as if space shrank.
+Mat3 closing_gradient(const State& state) {
+  Mat3 rate = state.cell.rate;
+  for (int k = 0; k < 3; ++k) rate(k, k) -= state.preparation.growth;
+  return rate;
+}
+
 using Shifts = std::array<Quad, Cell::images>;
 
 void add_outgrown(const State& state, const Shifts& shift, const Mat<Batch>& rate, std::span<const double> allowed,
@@ -42,11 +49,11 @@ OverlapForecast forecast(const State& state, Index i, Index j, const Geometry<do
   const auto positive = [](double x) { return closing_margin * std::max(0.0, x); };
   double speed = 0, driven = 0, inverse_mass = velocity[i].w;
   if (j == no_index) {
-    driven = positive(fastest_wall(state));
+    driven = positive(fastest_wall(state) + state.preparation.growth * state.grains.radius(i));
     speed = driven + positive(dot(velocity[i].vec(), g.n));
   } else {
     const double distance = state.grains.radius(i) + state.grains.radius(j) - g.overlap;
-    const double affine = -dot(state.cell.rate * (g.n * distance), g.n);
+    const double affine = -dot(closing_gradient(state) * (g.n * distance), g.n);
     driven = positive(affine);
     speed = positive(affine - dot(velocity[j].vec() - velocity[i].vec(), g.n));
     inverse_mass += velocity[j].w;
@@ -61,7 +68,8 @@ std::vector<std::size_t> outgrown_pairs(const State& state, std::span<const doub
   Shifts shift;
   for (std::size_t c = 0; c < Cell::images; ++c) shift[c].set(state.cell.shift(static_cast<std::uint8_t>(c)));
   Mat<Batch> rate;
-  for (std::size_t k = 0; k < 9; ++k) rate.a[k] = Batch(state.cell.rate.a[k]);
+  const Mat3 gradient = closing_gradient(state);
+  for (std::size_t k = 0; k < 9; ++k) rate.a[k] = Batch(gradient.a[k]);
   const std::size_t chunks = list.chunk_begin.size() - 1;
   std::vector<std::vector<std::size_t>> found(chunks);
 #pragma omp parallel for schedule(static) if (chunks >= Contacts::worth_threads)

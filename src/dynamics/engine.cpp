@@ -3,6 +3,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "dynamics/bonds.hpp"
 #include "measure/volume.hpp"
@@ -50,6 +51,16 @@ void Engine::refresh_workspace() {
 void Engine::set_friction(const std::vector<double>& friction) {
   state_.friction = friction;
   loop_->set_materials(scene_.materials, friction, scene_.dimension);
+}
+
+void Engine::grow(double factor) {
+  auto& g = state_.grains;
+  const double volume = std::pow(factor, state_.dimension);
+  double largest = 0;
+  for (auto& p : g.position) largest = std::max(largest, p.w), p.w *= factor;
+  for (auto& v : g.velocity) v.w /= volume;
+  for (auto& s : g.spin) s.w /= volume * factor * factor;
+  state_.list.grown += 2 * largest * (factor - 1);
 }
 
 void Engine::bond(const BondSpec& spec) {

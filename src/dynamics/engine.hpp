@@ -14,6 +14,9 @@ class Engine {
   void set_friction(const std::vector<double>& friction);  ///< as State::friction
   void set_local_damping(double alpha) { kick_.local = alpha; }
 
+  /// Makes every radius `factor` ≥ 1 times as large, masses and moments of inertia along with it (density stays).
+  void grow(double factor);
+
   /// Makes bonds between grains that have none, at their present distance: no force changes.
   void bond(const BondSpec& spec);
 

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "boundary/body_control.hpp"
 #include "boundary/cell_control.hpp"
+#include "dynamics/preparation.hpp"
 #include "state/damping.hpp"
 #include "state/friction.hpp"
 
@@ -27,6 +28,7 @@ void begin_stage(const Scene& scene, State& state) {
   state.cycle = {};
   state.policy = {};
   begin_body_stage(scene, state);
+  begin_preparation(stage, state);
 }
 
 void apply_stage(const Scene& scene, const State& state, Engine& engine) {
@@ -57,8 +59,15 @@ bool strained_out(const State& state, const StageSpec& s) {
   return std::ranges::any_of(strain, [&](double e) { return std::abs(e) > s.cycle->largest_strain; });
 }
 
+/// Whether the stage's conditions of rest hold; true when it names none.
+bool at_rest(const StageSpec& s, const RunStatus& status) {
+  if (given(s.until_stress_error) && !(status.stress_error < s.until_stress_error)) return false;
+  return !given(s.until_unbalanced) || status.unbalanced < s.until_unbalanced;
+}
+
 bool finished(const State& state, const StageSpec& s, const RunStatus& status, bool checked) {
   if (strained_out(state, s)) return true;
+  if (!is_prepared(s, state)) return false;
   if (!checked && (given(s.until_stress_error) || given(s.until_unbalanced))) return false;
   if (given(s.until_steps) && static_cast<double>(state.stage_step) < s.until_steps) return false;
   if (given(s.until_time) && state.stage_time < s.until_time) return false;
@@ -66,9 +75,7 @@ bool finished(const State& state, const StageSpec& s, const RunStatus& status, b
   if (given(s.until_shear_strain) && shear_strain(state) < s.until_shear_strain) return false;
   if (given(s.until_displacement) && largest_displacement(state) < s.until_displacement) return false;
   if (given(s.until_cycles) && !cycles_done(state, s)) return false;
-  if (given(s.until_stress_error) && !(status.stress_error < s.until_stress_error)) return false;
-  if (given(s.until_unbalanced) && !(status.unbalanced < s.until_unbalanced)) return false;
-  return true;
+  return at_rest(s, status);
 }
 
 bool every(const State& state, double n) {
@@ -154,6 +161,7 @@ bool run_stages(const Scene& scene, State& state, StepPolicy& policy, const RunO
       throw RunError(fmt::format(
           "step {}: the motion is no longer finite; the step {:.3g} s was unstable: use policy = \"certified\"",
           state.step, taken));
+    if (state.stage_step % 10 == 0) prepare_grains(stage, state, engine, at_rest(stage, status));
     const bool ends = finished(state, stage, status, checked);
     if (observer.step) observer.step(state, status);
     if (observer.record && (ends || due(state, stage, before))) observer.record(state, status);

@@ -165,6 +165,9 @@ void read_cloud(const TomlReader& t, int dimension, SpecimenSpec& s) {
   double scale = 1;
   if (t.number("scale", scale, positive)) s.grading.scale(scale);
   t.number("solid_fraction", s.solid_fraction, open(0, dimension == 3 ? 0.7 : 0.9));  // below dense packings
+  if (t.number("expand_to", s.expand_to, open(0, 1)) && s.expand_to <= s.solid_fraction)
+    throw t.error("expand_to", fmt::format("must be above solid_fraction = {:g}", s.solid_fraction),
+                  "the grains of the cloud grow until they fill the box so far");
   t.numbers("aspect", std::span(s.aspect).first(static_cast<std::size_t>(dimension)), positive);
 }
 
@@ -233,6 +236,9 @@ void read_top(const TomlReader& top, Scene& scene) {
     t->finish();
   }
   read_stages(top, scene);
+  const auto grows = [](const StageSpec& s) { return s.radius_growth > 0; };
+  if (!std::isnan(scene.specimen.expand_to) && !std::ranges::any_of(scene.stages, grows))
+    throw top.error("specimen", "has expand_to, but no stage lets grains grow", "add radius_growth to a stage");
   top.finish();
 }
 

@@ -59,7 +59,7 @@ void visit_contacts(Archive& a, C& contacts) {
 
 template <class Archive, class L>
 void visit_list(Archive& a, L& list) {
-  auto& [begin, j, image, skin, contact_skin, longest, used, reference, reference_cell, builds, refreshes, refreshed] =
+  auto& [begin, j, image, skin, contact_skin, longest, used, grown, reference, reference_cell, builds, refreshes, refreshed] =
       list;
   a.array("list/begin", "-", begin);
   a.array("list/j", "-", j);
@@ -68,6 +68,7 @@ void visit_list(Archive& a, L& list) {
   a.value("list/contact_skin", "m", contact_skin);
   a.value("list/longest", "m", longest);
   a.value("list/used", "m", used);
+  a.value("list/grown", "m", grown);
   a.array("list/reference", "m", reference);
   a.value("list/reference_cell", "m", reference_cell);
   a.value("list/builds", "-", builds);
@@ -223,7 +224,7 @@ template <class Archive, class S>
 void visit_state(Archive& a, S& state) {
   auto& [dimension, time, step, dt, cell, grains, contacts, list, bodies, walls, spokes, wall_contacts, glued, virial,
          stiffness_sum, ledger, friction, friction_scatter, bonds, stage, stage_step, stage_time, unbalanced, kinetic,
-         policy, servo, cycle] = state;
+         policy, servo, cycle, preparation] = state;
   a.value("dimension", "-", dimension);
   a.value("time", "s", time);
   a.value("step", "-", step);
@@ -252,6 +253,12 @@ void visit_state(Archive& a, S& state) {
   a.value("stage/servo", "1/s", servo);
   a.value("stage/direction", "-", cycle.direction);
   a.value("stage/turns", "-", cycle.turns);
+  auto& [settled, met, size, growth, grown_until] = preparation;
+  a.value("preparation/settled", "-", settled);
+  a.value("preparation/met", "-", met);
+  a.value("preparation/size", "-", size);
+  a.value("preparation/growth", "1/s", growth);
+  a.value("preparation/grown_until", "s", grown_until);
 }
 
 }  // namespace eg

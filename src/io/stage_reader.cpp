@@ -228,8 +228,34 @@ void read_bond(const TomlReader& t, const Scene& scene, StageSpec& stage) {
   stage.bond = bond;
 }
 
+/// friction = { start = …, void_ratio = … } or { start = …, mean_stress = … }
+void read_friction_schedule(const TomlReader& t, StageSpec& stage) {
+  double start = 0;
+  FrictionSchedule schedule;
+  t.number("start", start, positive, Need::required);
+  const bool volume = t.number("void_ratio", schedule.void_ratio, positive);
+  if (t.number("mean_stress", schedule.mean_stress, positive) == volume)
+    throw t.error("", "must aim at either a void_ratio or a mean_stress",
+                  "for example { start = 0.5, void_ratio = 0.6 }");
+  t.finish();
+  stage.friction = start, stage.friction_schedule = schedule;
+}
+
+/// What a stage that changes its grains needs beside it.
+void check_preparation(const TomlReader& t, const Scene& scene, const StageSpec& stage) {
+  if (stage.friction_schedule && std::isnan(stage.until_unbalanced))
+    throw t.error("friction", "falls whenever the packing is at rest, but until names no rest",
+                  "add unbalanced_force to until");
+  if (!(stage.radius_growth > 0)) return;
+  if (std::isnan(scene.specimen.expand_to))
+    throw t.error("radius_growth", "finds radii that have their sizes already", "add expand_to to [specimen]");
+  if (scene.energy)
+    throw t.error("radius_growth", "does work that the energy ledger does not know", "remove record.energy");
+}
+
 void check_cell(const TomlReader& t, const Scene& scene) {
   if (scene.boundary.kind == BoundarySpec::Kind::periodic) return;
+  if (t.is_table("friction")) throw t.error("friction", "as a schedule needs a periodic cell", "give a number");
   for (const char* key : {"stress", "strain_rate", "hold", "cycle"})
     if (t.has(key)) throw t.error(key, "needs a periodic cell", "set boundary.type = \"periodic\"");
   const auto until = t.table("until", Need::required);
@@ -243,7 +269,11 @@ StageSpec read_stage(const TomlReader& t, const Scene& scene) {
   StageSpec stage;
   t.name("name", stage.name, Need::required);
   check_cell(t, scene);
-  t.number("friction", stage.friction, non_negative);
+  if (t.is_table("friction"))
+    read_friction_schedule(*t.table("friction"), stage);
+  else
+    t.number("friction", stage.friction, non_negative);
+  t.number("radius_growth", stage.radius_growth, positive);
   t.number("local_damping", stage.local_damping, from_below(0, 1));
   if (const auto bond = t.table("bond")) read_bond(*bond, scene, stage);
   t.number("max_strain_rate", stage.max_strain_rate, positive);
@@ -259,6 +289,7 @@ StageSpec read_stage(const TomlReader& t, const Scene& scene) {
   read_until(*t.table("until", Need::required), stage);
   if (const auto record = t.table("record")) read_record(*record, stage);
   t.finish();
+  check_preparation(t, scene, stage);
   return stage;
 }
 

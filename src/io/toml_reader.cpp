@@ -281,5 +281,9 @@ bool TomlReader::is_text(std::string_view key) const {
   const toml::node* node = find(key);
   return node && node->is_string();
 }
+bool TomlReader::is_table(std::string_view key) const {
+  const toml::node* node = find(key);
+  return node && node->is_table();
+}
 
 }  // namespace eg

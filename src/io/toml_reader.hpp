@@ -98,6 +98,7 @@ class TomlReader {
   /// Every entry of this table, which must be tables, in the order of the file.
   std::vector<std::pair<std::string, TomlReader>> named_tables() const;
   bool is_text(std::string_view key) const;
+  bool is_table(std::string_view key) const;
 
   /// The error for the value of `key` (for the table itself when `key` is empty).
   InputError error(std::string_view key, std::string_view rule, std::string_view remedy = {}) const;

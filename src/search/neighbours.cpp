@@ -162,6 +162,7 @@ void refresh_contacts(State& state) {
   state.list.reference.resize(n);
   for (std::size_t i = 0; i < n; ++i) state.list.reference[i] = state.grains.position[i].vec();
   state.list.reference_cell = state.cell.h;
+  state.list.grown = 0;
   ++state.list.refreshes;
   refresh_wall_contacts(state);
 }
@@ -184,7 +185,7 @@ double used_skin(const State& state, double displacement) {
   const Mat3 strain = state.cell.h * inverse(state.list.reference_cell) - Mat3::identity();
   double walls = 0;
   for (const auto& w : state.walls) walls = std::max(walls, w.moved);
-  return 2 * displacement + norm(strain) * state.list.longest + walls;
+  return 2 * displacement + norm(strain) * state.list.longest + walls + state.list.grown;
 }
 
 /// A wide skin makes the force loop take pairs that do not touch, a narrow one makes refreshes frequent; a refresh

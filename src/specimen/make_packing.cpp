@@ -73,7 +73,8 @@ Packing cloud_packing(const Scene& scene, Random& random) {
   const std::size_t count =
       spec.coarse_count > 0 ? count_with_coarse(spec.grading, scene.dimension, spec.coarse_count) : spec.count;
   if (count == 0) throw input_error(scene.file, 0, "specimen.count = 0", "must be at least 1");
-  const auto radii = draw_radii(spec.grading, scene.dimension, count, random);
+  auto radii = draw_radii(spec.grading, scene.dimension, count, random);
+  for (double& r : radii) r *= spec.first_size(scene.dimension);
   return make_cloud(radii,
                     {.dimension = scene.dimension,
                      .solid_fraction = spec.solid_fraction,

@@ -111,6 +111,7 @@ State make_state(const Scene& scene, const Packing& packing) {
   make_walls(scene, packing.box, state);
   state.friction = pair_friction(scene);
   state.friction_scatter = friction_scatter(scene);
+  state.preparation.size = scene.specimen.first_size(scene.dimension);
   return state;
 }
 

@@ -18,6 +18,7 @@ struct NeighbourList {
   double contact_skin = 0;      ///< likewise for State::contacts [m]
   double longest = 0;           ///< largest diameter plus skin [m]
   double used = 0;              ///< skin used up before State::contacts was last refreshed [m]
+  double grown = 0;             ///< by which surfaces have come nearer since then as radii grew, at most [m]
   std::vector<Vec3> reference;  ///< positions when State::contacts was last refreshed [m]
   Mat3 reference_cell;          ///< cell matrix then
   std::uint64_t builds = 0, refreshes = 0;

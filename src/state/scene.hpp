@@ -1,6 +1,7 @@
 #pragma once
 // What is given: a validated scene, never changed during a run. SI units; compressive stress and strain positive.
 #include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <string>
@@ -58,9 +59,15 @@ struct SpecimenSpec {
   std::size_t coarse_count = 0;  ///< instead of count, gap gradings: of the coarse grains
   Grading grading;
   double solid_fraction = 0.3;            ///< of the cloud, before any compression
+  double expand_to = not_given;           ///< solid fraction of the same box once radii have grown to their sizes
   std::array<double, 3> aspect{1, 1, 1};  ///< edges of the box relative to x
   // file
   std::string path;  ///< packing text, or snapshot (.h5), relative to the scene file
+
+  /// Radii to begin with over those of the grading: below 1 where a stage lets them grow.
+  double first_size(int dimension) const {
+    return std::isnan(expand_to) ? 1.0 : std::pow(solid_fraction / expand_to, 1.0 / dimension);
+  }
 };
 
 /// [[boundary.wall]], one surface.
@@ -176,11 +183,19 @@ struct BondSpec {
   std::size_t clusters = 0;  ///< only within so many clusters of grains; 0: between all
 };
 
+/// Friction that falls, from StageSpec::friction on, while the packing is at rest, until one of these is met.
+struct FrictionSchedule {
+  double void_ratio = not_given;   ///< [-]
+  double mean_stress = not_given;  ///< [Pa] (2D: N/m)
+};
+
 /// [[stage]]
 struct StageSpec {
   std::string name;
   std::optional<BondSpec> bond;
-  std::optional<double> friction;       ///< replaces every material's friction during this stage
+  std::optional<double> friction;  ///< replaces every material's friction during this stage
+  std::optional<FrictionSchedule> friction_schedule;
+  double radius_growth = 0;             ///< of all radii until they have the sizes of the grading [1/s]
   std::optional<double> local_damping;  ///< replaces damping.local during this stage
   // strain: axes x, y, z, then yz, xz, xy (engineering shear rate, for a cell with tilt)
   std::array<ComponentControl, 6> control{};

@@ -110,6 +110,15 @@ struct CycleProgress {
   std::uint64_t turns = 0;  ///< limits reached so far
 };
 
+/// Where a stage stands that changes the grains themselves (dynamics/preparation.hpp).
+struct Preparation {
+  bool settled = false;    ///< friction schedule: the packing has come to rest at the friction it began with …
+  bool met = false;        ///< … and has met the target since
+  double size = 1;         ///< of radii, over that of the grading [-]
+  double growth = 0;       ///< rate of all radii now [1/s]
+  double grown_until = 0;  ///< stage time up to which they have grown [s]
+};
+
 struct State {
   int dimension = 3;
   double time = 0;  ///< [s]
@@ -138,6 +147,7 @@ struct State {
   StepPlan policy;
   std::array<double, 6> servo{};  ///< integral part of the cell controller, an equation each [1/s]
   CycleProgress cycle;
+  Preparation preparation;
 };
 
 }  // namespace eg

@@ -98,8 +98,8 @@ const std::vector<SceneCase> scene_cases{
      "record, rotation, seed, settings, specimen, stage, timestep, title"},
     {7, "[contct]", "s.toml:7: contct is not a known key; did you mean \"contact\"?"},
     {11, "count = 100\ncells = [1, 1, 1]",
-     "s.toml:12: specimen.cells is not a known key; known here: aspect, coarse_count, count, grading, "
-     "scale, solid_fraction, source"},
+     "s.toml:12: specimen.cells is not a known key; known here: aspect, coarse_count, count, "
+     "expand_to, grading, scale, solid_fraction, source"},
     {20, "until = { stress_eror = 1e-3 }",
      "s.toml:20: stage[1].until.stress_eror is not a known key; did you mean \"stress_error\"?"},
     {20, "", "s.toml:17: stage[1].until is missing; add \"until\" to [stage[1]]"},
@@ -253,6 +253,22 @@ const std::vector<SceneCase> scene_cases{
     {19, "strain_rate = { z = 1 }\ncycle = { amplitude = 1e3 }",
      "s.toml:20: stage[1].cycle must run between limits of either a stress or a strain; for example { stress = "
      "\"deviator\", mean = 0, amplitude = 20e3 }"},
+    {19, "friction = { start = 0.5 }",
+     "s.toml:19: stage[1].friction must aim at either a void_ratio or a mean_stress; for example { start = 0.5, "
+     "void_ratio = 0.6 }"},
+    {19, "friction = { start = 0, void_ratio = 0.6 }", "s.toml:19: stage[1].friction.start = 0 must be finite and > 0"},
+    {19, good_scene[18] + "\nfriction = { start = 0.5, void_ratio = 0.6 }",
+     "s.toml:20: stage[1].friction falls whenever the packing is at rest, but until names no rest; add "
+     "unbalanced_force to until"},
+    {14, "type = \"box\"\n[[stage]]\nname = \"a\"\nfriction = { start = 0.5, void_ratio = 0.6 }\nuntil = { steps = 1 }",
+     "s.toml:17: stage[1].friction as a schedule needs a periodic cell; give a number"},
+    {19, good_scene[18] + "\nradius_growth = 1",
+     "s.toml:20: stage[1].radius_growth = 1 finds radii that have their sizes already; add expand_to to [specimen]"},
+    {12, good_scene[11] + "\nexpand_to = 0.2",
+     "s.toml:13: specimen.expand_to = 0.2 must be above solid_fraction = 0.3; the grains of the cloud grow until they "
+     "fill the box so far"},
+    {12, good_scene[11] + "\nexpand_to = 0.6",
+     "s.toml:9: specimen has expand_to, but no stage lets grains grow; add radius_growth to a stage"},
     {20, "until = { cycles = 3 }",
      "s.toml:20: stage[1].until.cycles = 3 needs a cycle to count; add cycle = { … } to the stage"},
     {20, "until = {}",

@@ -4,6 +4,7 @@
 
 #include "io/snapshot.hpp"
 #include "measure/contact_network.hpp"
+#include "measure/grain_stress.hpp"
 #include "support/case_run.hpp"
 
 namespace {
@@ -61,6 +62,38 @@ TEST(Case, ForceChainSlidesAndThenRolls) {
   // just above and just below the friction that rolling needs at the last angle, 0.319 at 25 degrees
   EXPECT_EQ(squeezed("--set material.steel.friction=0.34").sliding, 0);
   EXPECT_GT(squeezed("--set material.steel.friction=0.29").sliding, 0);
+}
+
+TEST(Case, GapGradedFinesCarryLessThanTheirShare) {
+  const auto stress_over_volume = [](const std::string& settings) {
+    const CaseRun run("gap_graded", "--set specimen.coarse_count=60 " + settings);
+    EXPECT_TRUE(run.complete());
+    EXPECT_NEAR(run["mean_stress_Pa"] / 50e3, 1, 2e-3);
+    const auto s = eg::read_snapshot(run.file("final.h5"));
+    const auto contacts = eg::touching_contacts(s.scene, s.state);
+    const auto parts = eg::size_fractions(s.state, contacts, s.state.cell.volume(), std::vector{1e-3});
+    EXPECT_EQ(parts.size(), 2u);
+    EXPECT_NEAR(parts[0].solid_share, 0.25, 0.01);
+    return parts[0].mean_stress_share / parts[0].solid_share;
+  };
+  const double loose = stress_over_volume(""), dense = stress_over_volume("--set stage[1].friction=0");
+  EXPECT_GT(loose, 0);
+  EXPECT_LT(loose, 0.5);
+  EXPECT_GT(dense, loose);
+}
+
+TEST(Case, PreparationFrictionMeetsItsVoidRatio) {
+  for (const char* target : {"0.60", "0.66"}) {
+    const CaseRun run("preparation_friction",
+                      std::string("--set specimen.count=300 --set stage[1].friction.void_ratio=") + target);
+    ASSERT_TRUE(run.complete());
+    const auto stage = run.column("stage"), e = run.column("void_ratio"), p = run.column("mean_stress");
+    for (std::size_t k = 0; k < stage.size(); ++k)
+      if (k + 1 == stage.size() || stage[k + 1] != stage[k]) {
+        EXPECT_NEAR(e[k], std::stod(target), 5e-3);
+        EXPECT_NEAR(p[k] / 100e3, 1, 1e-3);
+      }
+  }
 }
 
 }  // namespace
