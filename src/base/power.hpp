@@ -45,4 +45,23 @@ Dual<N> power(const Dual<N>& a, const Dual<N>& p) {
   return c;
 }
 
+/// a^(1/3) for a normal number a > 0: a^(−1/3) guessed from the bits, then two steps of fourth order, and no division.
+EG_INLINE Batch cube_root(Batch a) {
+  const Double8 bits = __builtin_convertvector(reinterpret_cast<Int8>(a.v), Double8);
+  constexpr double guess = 6.14260989173336e18;  // 4/3 of the bits of 1, less what makes the largest error least, 3.4 %
+  Batch r = reinterpret_cast<Double8>(__builtin_convertvector(guess - bits * (1.0 / 3.0), Int8));
+  for (int step = 0; step < 2; ++step) {
+    const Batch h = Batch(1.0) - a * (r * r) * r;
+    r = r + r * h * (Batch(1.0 / 3) + h * (Batch(2.0 / 9) + h * Batch(14.0 / 81)));
+  }
+  return a * (r * r);
+}
+inline double cube_root(double a) { return std::cbrt(a); }
+template <std::size_t N>
+Dual<N> cube_root(const Dual<N>& a) {
+  Dual<N> c(std::cbrt(a.v));
+  for (std::size_t k = 0; k < N; ++k) c.d[k] = c.v / (3 * a.v) * a.d[k];
+  return c;
+}
+
 }  // namespace eg

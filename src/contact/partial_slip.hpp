@@ -49,65 +49,77 @@ struct PartialSlip {
     S reversed;     ///< 1 after a reversal, else 0
   };
 
+  /// 1/|v|, and |v| = that times |v|²; a vector of no length has a tiny one.
   template <class S>
-  EG_INLINE static S length(const Vec<S>& v) {
-    return root(max(dot(v, v), S(1e-60)));
+  EG_INLINE static S inverse_length(const S& square) {
+    return rsqrt(max(square, S(1e-60)));
+  }
+  /// 1/(mµN)
+  template <class S>
+  EG_INLINE static S inverse_scale(const Curve<S>& c, const S& inverse_limit) {
+    return inverse_limit * (S(1.0) - S(0.5) * c.reversed);
   }
 
   /// Effect of N + ΔN, grow = µΔN, on curve and force.
   template <class S>
-  EG_INLINE static void press(Curve<S>& c, Vec<S>& shear, const S& grow, const S& limit) {
+  EG_INLINE static void press(Curve<S>& c, Vec<S>& shear, const S& grow, const S& inverse_limit) {
     const Vec<S> away = shear - c.origin;
-    const S distance = length(away);
-    const Vec<S> unit = away * reciprocal(distance);
+    const S square = dot(away, away), inverse = inverse_length(square), distance = square * inverse;
+    const Vec<S> unit = away * inverse;
     c.origin -= unit * (grow * c.reversed);
     c.reach = select(c.reach > S(0.0), c.reach + grow * (S(1.0) + c.reversed), S(0.0));
     const S stuck = c.stuck + grow, lost = max(-stuck, S(0.0));
     c.stuck = max(stuck, S(0.0));
-    const S theta = stick_share(c, distance + grow * c.reversed - lost, limit);
+    const S theta = stick_share(c, distance + grow * c.reversed - lost, inverse_scale(c, inverse_limit));
     shear -= unit * min((S(1.0) - theta) * lost, distance);
   }
 
   /// θ at a distance |T − R| from the origin of the curve, E included.
   template <class S>
-  EG_INLINE static S stick_share(const Curve<S>& c, const S& distance, const S& limit) {
-    const S scale = max((S(1.0) + c.reversed) * limit, S(1e-200));
-    const S y = S(1.0) - (distance + c.stuck) / scale;
-    return power(min(max(y, S(1e-9)), S(1.0)), S(1.0 / 3.0));
+  EG_INLINE static S stick_share(const Curve<S>& c, const S& distance, const S& inverse_scale) {
+    const S y = S(1.0) - (distance + c.stuck) * inverse_scale;
+    return cube_root(min(max(y, S(1e-9)), S(1.0)));
   }
 
   /// T after the slip Δs, before Coulomb's limit.
   template <class S>
-  EG_INLINE static Vec<S> slide(Curve<S>& c, const Vec<S>& shear, const Vec<S>& slip, const S& k0, const S& limit) {
-    Vec<S> away = shear - c.origin;
-    const auto turns = dot(away, slip) < S(0.0);
-    c.reach = select(turns, length(away) * (S(2.0) - c.reversed), c.reach);
+  EG_INLINE static Vec<S> slide(Curve<S>& c, const Vec<S>& shear, const Vec<S>& slip, const S& k0, const S& limit,
+                                const S& inverse_limit) {
+    const Vec<S> from = shear - c.origin;
+    const S square = dot(from, from), inverse = inverse_length(square), whole = square * inverse;
+    const S along = dot(from, slip);
+    const auto turns = along < S(0.0);
+    c.reach = select(turns, whole * (S(2.0) - c.reversed), c.reach);
     c.origin = select(turns, shear, c.origin);
     c.reversed = select(turns, S(1.0), c.reversed);
-    away = shear - c.origin;
 
-    const S distance = length(away), step = length(slip), scale = max((S(1.0) + c.reversed) * limit, S(1e-200));
-    const S elastic = k0 * step, share = select(elastic > c.stuck, c.stuck / max(elastic, S(1e-200)), S(1.0));
-    const S theta = stick_share(c, distance, limit);
+    const S distance = select(turns, S(0.0), whole), scale = inverse_scale(c, inverse_limit);
+    const S step = root(max(dot(slip, slip), S(1e-60))), elastic = k0 * step;
+    const S share = select(elastic > c.stuck, c.stuck * reciprocal(max(elastic, S(1e-200))), S(1.0));
+    const S theta = stick_share(c, distance, scale);
     c.stuck = max(c.stuck - elastic, S(0.0));
     const auto apart = distance > S(1e-12) * limit;
-    const S outward = select(apart, max(dot(away, slip), S(0.0)) / distance, step) * (S(1.0) - share);
-    const S next = root(max(theta * theta - S(2.0 / 3.0) * k0 * outward / scale, S(1e-30)));
-    const S mean = S(2.0 / 3.0) * (theta * theta + theta * next + next * next) / (theta + next);
+    const S outward = select(apart, max(along, S(0.0)) * inverse, step) * (S(1.0) - share);
+    const S next = root(max(theta * theta - S(2.0 / 3.0) * k0 * outward * scale, S(1e-30)));
+    const S mean = S(2.0 / 3.0) * (theta * theta + theta * next + next * next) * reciprocal(theta + next);
     return shear + slip * (k0 * (share + (S(1.0) - share) * mean));
   }
 
   /// Ends curves that have been followed to their end, or by sliding, and starts anew after pressing.
   template <class S>
   EG_INLINE static void close(Curve<S>& c, const Vec<S>& shear, const Vec<S>& trial, const S& limit) {
-    const S zero(0.0), distance = length(shear - c.origin);
-    const auto ended = (distance + c.stuck > c.reach) | (dot(trial, trial) > limit * limit);
+    const S zero(0.0);
+    const Vec<S> away = shear - c.origin;
+    const S left = c.reach - c.stuck;
+    const auto ended = (left < zero) | (dot(away, away) > left * left) | (dot(trial, trial) > limit * limit);
     c.origin = select(ended, Vec<S>{zero, zero, zero}, c.origin);
     c.reach = select(ended, zero, c.reach), c.reversed = select(ended, zero, c.reversed);
 
-    const S now = length(shear - c.origin);
-    const auto anew = (c.stuck > now) & (c.stuck > select(c.reversed > zero, S(0.05) * limit, zero));
-    c.reach = select(anew, max(c.stuck, c.reach - now), c.reach);
+    const Vec<S> now = shear - c.origin;
+    const S square = dot(now, now);
+    const auto anew = (c.stuck * c.stuck > square) & (c.stuck > select(c.reversed > zero, S(0.05) * limit, zero));
+    if (!any(anew)) return;
+    c.reach = select(anew, max(c.stuck, c.reach - root(max(square, S(1e-60)))), c.reach);
     c.origin = select(anew, shear, c.origin);
     c.reversed = select(anew, zero, c.reversed), c.stuck = select(anew, zero, c.stuck);
   }
@@ -117,10 +129,10 @@ struct PartialSlip {
     const auto n = normal<S>(p, strain.overlap);
     const Vec<S> before = history_vector(h, 0);
     Curve<S> curve{history_vector(h, 1), h[7], h[8], h[9]};
-    const S limit = p.friction * n.force;
+    const S limit = p.friction * n.force, inverse_limit = reciprocal(max(limit, S(1e-200)));
     Vec<S> shear = before;
-    press(curve, shear, p.friction * (n.force - h[6]), limit);
-    const Vec<S> trial = slide(curve, shear, strain.slip, n.tangential, limit);
+    press(curve, shear, p.friction * (n.force - h[6]), inverse_limit);
+    const Vec<S> trial = slide(curve, shear, strain.slip, n.tangential, limit, inverse_limit);
     shear = coulomb(trial, limit);
     close(curve, shear, trial, limit);
     set_history_vector(h, 0, shear), set_history_vector(h, 1, curve.origin);
@@ -128,7 +140,8 @@ struct PartialSlip {
 
     Response<S> r{n, shear, trial};
     const Vec<S> ring = before + strain.slip * n.tangential - trial;  // T that the slipping ring did not take up
-    r.loss = select(n.tangential > S(0.0), S(0.5) * dot(before + shear, ring) / max(n.tangential, S(1e-300)), S(0.0));
+    r.loss = select(n.tangential > S(0.0),
+                    S(0.5) * dot(before + shear, ring) * reciprocal(max(n.tangential, S(1e-200))), S(0.0));
     return r;
   }
 };

@@ -430,6 +430,14 @@ TEST(Batch, PowersAreAccurate) {
   EXPECT_EQ(power(Batch(1.0), Batch(0.3))[0], 1.0);
 }
 
+TEST(Batch, CubeRootsAreAccurate) {
+  Random random(11);
+  for (int trial = 0; trial < 2000; ++trial) {
+    const double a = std::exp(random.uniform(-60, 60));
+    EXPECT_NEAR(cube_root(Batch(a))[5] / std::cbrt(a), 1, 1e-15);
+  }
+}
+
 TEST(Batch, SelectAndMasksWork) {  // clang 14 with std::experimental::simd silently fails this kind of test
   Batch a(1.0), b(2.0);
   a.v[3] = 5.0;
