@@ -14,6 +14,8 @@ namespace eg {
 namespace {
 
 constexpr double gain = 0.5;            // α; the proof needs α ≤ 2/3, the rest is room for K to grow within a step
+constexpr double patience = 200;        // steps in which the part that builds up takes over a lasting speed
+constexpr double near_target = 0.1;     // it does so only near the target, or the servo would overshoot
 constexpr double slow_enough = 2.5e-3;  // inertial number below which straining is quasi-static
 
 using Servo = BodyDrive::Servo;
@@ -131,9 +133,11 @@ void BodyControl::drive(State& state, double dt) const {
       if (!d.free[static_cast<std::size_t>(k)]) body.velocity[k] = d.velocity[k];
     body.opening = d.opening;
     if (d.servo == Servo::none) continue;
-    const double excess = body_load(scene_, state, d).force - target_force(scene_, state, d);
-    const double wanted = body.stiffness > 0 ? gain * excess / (body.stiffness * dt) : excess < 0 ? -d.max_speed : 0.0;
-    const double speed = std::clamp(wanted, -d.max_speed, d.max_speed);  // outward
+    const double target = target_force(scene_, state, d), excess = body_load(scene_, state, d).force - target;
+    const bool touched = body.stiffness > 0;
+    const double at_once = touched ? gain * excess / (body.stiffness * dt) : excess < 0 ? -d.max_speed : 0.0;
+    body.follow = touched && std::abs(excess) < near_target * target ? body.follow + at_once / patience : 0.0;
+    const double speed = std::clamp(at_once + body.follow, -d.max_speed, d.max_speed);  // outward
     if (d.radial)
       body.opening = wall_of(state, d.body, Wall::cylinder)->hollow ? speed : -speed;
     else
@@ -145,7 +149,7 @@ void begin_body_stage(const Scene& scene, State& state) {
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     Body& body = state.bodies[b];
     const BodyDrive drive = drive_of(scene, state, b);
-    body.moved = {}, body.opened = 0;
+    body.moved = {}, body.opened = 0, body.follow = 0;
     for (int k = 0; k < 3; ++k)
       if (!drive.free[static_cast<std::size_t>(k)]) body.velocity[k] = drive.velocity[k];
     body.free = drive.free;

@@ -262,7 +262,7 @@ Tally ForceLoopOf<Law, rotation>::walls(State& state, ForceWorkspace& work, doub
     const Quad& p = state.grains.position[c.grain];
     const Quad& v = state.grains.velocity[c.grain];
     const auto g = grain_wall<double>(state, wall, p.vec(), p.w, options.arms);
-    const Vec3 outward = radial(wall, g.n);
+    const Vec3 outward = radial(wall, p.vec());
     const Vec3 turned = rotation ? state.grains.spin[c.grain].vec() * dt : Vec3{};
     const auto motion = wall_motion<double>((body.velocity + outward * body.opening - v.vec()) * dt, turned, p.w);
     const auto inc = increment<rotation>(g, motion);

@@ -169,6 +169,11 @@ void read_cloud(const TomlReader& t, int dimension, SpecimenSpec& s) {
     throw t.error("expand_to", fmt::format("must be above solid_fraction = {:g}", s.solid_fraction),
                   "the grains of the cloud grow until they fill the box so far");
   t.numbers("aspect", std::span(s.aspect).first(static_cast<std::size_t>(dimension)), positive);
+  std::array<double, 3> box{};
+  if (!t.numbers("box", std::span(box).first(static_cast<std::size_t>(dimension)), positive)) return;
+  s.box = {box[0], box[1], box[2]};
+  for (const char* key : {"solid_fraction", "aspect"})
+    if (t.has(key)) throw t.error(key, "contradicts box", "keep one of the two");
 }
 
 void read_specimen(const TomlReader& t, int dimension, SpecimenSpec& s) {

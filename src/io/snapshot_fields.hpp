@@ -79,7 +79,7 @@ void visit_list(Archive& a, L& list) {
 template <class Archive, class B>
 void visit_bodies(Archive& a, B& bodies) {
   [[maybe_unused]] const auto [velocity, opening, force, spread, magnitude, stiffness, glued_stiffness, moved, opened,
-                               mass, free, yields] = Body{};  // all its fields
+                               mass, free, follow, yields] = Body{};  // all its fields
   a.column(
       "bodies/velocity", "m/s", bodies, [](auto& b) -> auto& { return b.velocity; });
   a.column(
@@ -102,6 +102,8 @@ void visit_bodies(Archive& a, B& bodies) {
       "bodies/mass", "kg", bodies, [](auto& b) -> auto& { return b.mass; });
   a.column(
       "bodies/free", "-", bodies, [](auto& b) -> auto& { return b.free; });
+  a.column(
+      "bodies/follow", "m/s", bodies, [](auto& b) -> auto& { return b.follow; });
   a.column(
       "bodies/yields", "-", bodies, [](auto& b) -> auto& { return b.yields; });
 }

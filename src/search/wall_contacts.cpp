@@ -54,7 +54,7 @@ void add_if_near(const State& state, Index wall_index, Index grain, std::vector<
   const Wall& wall = state.walls[wall_index];
   const Quad& p = state.grains.position[grain];
   const double skin = state.list.contact_skin;
-  if (!in_window(wall, p.vec(), skin)) return;
+  if (std::abs(off_window(wall, p.vec())) > p.w + skin) return;
   const double overlap = grain_surface(state, wall, p.vec(), p.w, Arms::middle).overlap;
   if (overlap > -skin) fresh.push_back(contact(state, grain, wall_index));
   if (overlap > 2 * p.w && !wall.windowed() && state.grains.velocity[grain].w > 0)

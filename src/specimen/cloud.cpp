@@ -31,6 +31,7 @@ double solid_volume(std::span<const double> radii, int dimension) {
 }
 
 Vec3 box_edges(double volume, const CloudSpec& spec) {
+  if (spec.box.x > 0) return {spec.box.x, spec.box.y, spec.dimension == 3 ? spec.box.z : 1};
   const auto [x, y, z] = spec.aspect;
   if (spec.dimension == 3) return std::cbrt(volume / (x * y * z)) * Vec3{x, y, z};
   const double scale = std::sqrt(volume / (x * y));
@@ -165,8 +166,8 @@ Packing make_cloud(std::span<const double> radii, const CloudSpec& spec, Random&
   if (!cloud.insert(random) && !cloud.push_apart())
     throw RunError(
         fmt::format("cloud of {} grains: solid fraction {:.4g} not reached without overlap; "
-                    "lower specimen.solid_fraction and compress the cloud instead",
-                    radii.size(), spec.solid_fraction));
+                    "lower specimen.solid_fraction, or enlarge its box, and compress the cloud instead",
+                    radii.size(), solid_volume(radii, spec.dimension) / (packing.box.x * packing.box.y * packing.box.z)));
   packing.position = cloud.take_positions();
   return packing;
 }

@@ -12,6 +12,7 @@ struct CloudSpec {
   int dimension = 3;
   double solid_fraction = 0.3;            ///< volume of grains over volume of the box [-]
   std::array<double, 3> aspect{1, 1, 1};  ///< edges of the box relative to each other; aspect[2] is not read in 2D
+  Vec3 box;                               ///< edges of the box [m], instead of the two above where they are > 0
   bool periodic = true;                   ///< false: grains lie wholly inside the box
 };
 

@@ -61,6 +61,7 @@ struct SpecimenSpec {
   double solid_fraction = 0.3;            ///< of the cloud, before any compression
   double expand_to = not_given;           ///< solid fraction of the same box once radii have grown to their sizes
   std::array<double, 3> aspect{1, 1, 1};  ///< edges of the box relative to x
+  Vec3 box;                               ///< edges of the box [m], instead of the two above; 0: not given
   // file
   std::string path;  ///< packing text, or snapshot (.h5), relative to the scene file
 

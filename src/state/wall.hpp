@@ -21,6 +21,7 @@ struct Body {
   double opened = 0;           ///< growth of the radius since the stage began [m]
   double mass = 0;             ///< [kg], of a body that some stage sets free
   std::array<bool, 3> free{};  ///< axes along which it goes where forces take it
+  double follow = 0;           ///< part of a servo's speed that has built up, outward [m/s]
   bool yields = false;         ///< it answers the forces on it: free along an axis, or driven by a servo
 };
 
@@ -37,7 +38,7 @@ struct Wall {
   double length = 0;       ///< rim [m]
   std::uint8_t owned = 0;  ///< face: bits 0–2: a grain exactly over edge ab, bc, ca is its own
   Index spoke = 0, spokes = 0;  ///< tip: where its edges begin in State::spokes, and how many they are
-  /// Only grains whose centre has low ≤ (x − point)·along < high feel it.
+  /// It is there for grains whose centre has low ≤ (x − point)·along < high; beside that, its ledge and corner are.
   Vec3 along;
   double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();  ///< [m]
   Index body = 0;

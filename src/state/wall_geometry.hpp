@@ -77,23 +77,40 @@ Geometry<S> grain_surface(const State& state, const Wall& wall, const Vec<S>& x,
   return grain_mesh(state, wall, x, radius, arms);
 }
 
-/// Whether the centre is in the wall's window, widened by `margin` [m].
-inline bool in_window(const Wall& wall, const Vec3& x, double margin = 0) {
-  if (!wall.windowed()) return true;
+/// Where the centre stands to the wall's window: 0 within, > 0 so far above it, < 0 so far below [m].
+inline double off_window(const Wall& wall, const Vec3& x) {
+  if (!wall.windowed()) return 0;
   const double s = dot(x - wall.point, wall.along);
-  return s >= wall.low - margin && s < wall.high + margin;
+  return s < wall.low ? s - wall.low : s >= wall.high ? s - wall.high : 0;
 }
 
-/// `x`: the grain's centre. Outside the window nothing touches.
+/// Beside its window a wall ends in a ledge: behind its surface a grain rests on that, before it on the corner.
+template <class S>
+Geometry<S> grain_ledge(const Wall& wall, const Geometry<S>& surface, const Vec<S>& x, const S& radius, bool above,
+                        Arms arms) {
+  using std::sqrt;
+  const Vec<S> out = lift<S>(above ? wall.along : -wall.along);
+  const S off = dot(x - lift<S>(wall.point), out) - S(above ? wall.high : -wall.low), before = radius - surface.overlap;
+  if (!(before > S(0.0))) return against(-out, radius - off, radius, arms);
+  const S distance = sqrt(max(off * off + before * before, S(1e-300)));
+  const Vec<S> to_corner = surface.n * before - out * off;
+  return against(to_corner * (S(1.0) / distance), radius - distance, radius, arms);
+}
+
+/// `x`: the grain's centre.
 template <class S>
 Geometry<S> grain_wall(const State& state, const Wall& wall, const Vec<S>& x, const S& radius, Arms arms) {
-  return in_window(wall, plain(x)) ? grain_surface(state, wall, x, radius, arms) : apart<S>(wall, radius, arms);
+  const double off = off_window(wall, plain(x));
+  if (off == 0) return grain_surface(state, wall, x, radius, arms);
+  if (std::abs(off) >= plain(radius)) return apart<S>(wall, radius, arms);
+  return grain_ledge(wall, grain_surface(state, wall, x, radius, Arms::surface), x, radius, off > 0, arms);
 }
 
-/// Outward along the radius at a contact whose normal is n (zero for other shapes than cylinders).
-inline Vec3 radial(const Wall& wall, const Vec3& n) {
+/// Unit vector from the axis of a cylinder to x; zero for other shapes.
+inline Vec3 radial(const Wall& wall, const Vec3& x) {
   if (wall.shape != Wall::cylinder) return {};
-  return wall.hollow ? n : -n;
+  const Vec3 from = x - wall.point, across = from - wall.normal * dot(from, wall.normal);
+  return across * (1 / std::max(norm(across), 1e-300));
 }
 
 }  // namespace eg

@@ -76,10 +76,15 @@ TEST(Walls, WindowTakesGrainsByTheirCentre) {
   const State state;
   Wall wall;
   wall.normal = {1, 0, 0}, wall.along = {0, 0, 1}, wall.low = -1, wall.high = 2;
-  for (const double z : {-1.0, 0.0, 1.999})
-    EXPECT_GT(grain_wall(state, wall, Vec3{0, 0, z}, 0.5, Arms::middle).overlap, 0);
-  for (const double z : {-1.001, 2.0, 5.0})
-    EXPECT_LT(grain_wall(state, wall, Vec3{0, 0, z}, 0.5, Arms::middle).overlap, 0);
+  const auto at = [&](double x, double z) { return grain_wall(state, wall, Vec3{x, 0, z}, 0.5, Arms::middle); };
+  for (const double z : {-1.0, 0.0, 1.999}) EXPECT_NEAR(at(0.4, z).overlap, 0.1, 1e-15);
+  for (const double z : {-1.31, 2.31, 5.0}) EXPECT_LT(at(0.4, z).overlap, 0);
+  EXPECT_NEAR(at(0.3, 2.4).overlap, 0, 1e-15);  // the corner
+  EXPECT_NEAR(at(0.3, 2.1).n.z, -0.1 / std::hypot(0.3, 0.1), 1e-12);
+  EXPECT_NEAR(at(0.3, -1.1).n.z, 0.1 / std::hypot(0.3, 0.1), 1e-12);
+  EXPECT_NEAR(at(-3, 2.4).overlap, 0.1, 1e-15);  // the ledge
+  EXPECT_EQ(at(-3, 2.4).n.z, -1);
+  for (const double z : {-1.0, 2.0}) EXPECT_NEAR(at(0.4, z - 1e-12).overlap, at(0.4, z + 1e-12).overlap, 1e-11);
 }
 
 TEST(Walls, ASphereTouchesABlockOnceWhereverItComes) {
