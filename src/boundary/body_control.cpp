@@ -14,8 +14,8 @@ namespace eg {
 namespace {
 
 constexpr double gain = 0.5;            // α; the proof needs α ≤ 2/3, the rest is room for K to grow within a step
-constexpr double patience = 200;        // steps in which the part that builds up takes over a lasting speed
-constexpr double near_target = 0.1;     // it does so only near the target, or the servo would overshoot
+constexpr double patience = 400;        // steps in which the part that builds up takes over a lasting speed
+constexpr double near_target = 0.05;    // it does so only near the target, or the servo would overshoot
 constexpr double slow_enough = 2.5e-3;  // inertial number below which straining is quasi-static
 
 using Servo = BodyDrive::Servo;

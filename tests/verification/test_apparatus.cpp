@@ -89,11 +89,13 @@ TEST(Servo, HoldsItsTargetWithoutOvershoot) {
       "a.toml");
   State state = test::state_of(scene);
   double most = 0, worst = 0;
-  run(scene, state, {.step = [&](const State& s, const RunStatus& status) {
-        const double stress = body_load(scene, s, drive_of(scene, s, 5)).stress();
-        most = std::max(most, stress);
-        if (status.stage.name == "hold") worst = std::max(worst, std::abs(stress / 100e3 - 1));
-      }});
+  RunObserver observer;
+  observer.step = [&](const State& s, const RunStatus& status) {
+    const double stress = body_load(scene, s, drive_of(scene, s, 5)).stress();
+    most = std::max(most, stress);
+    if (status.stage.name == "hold") worst = std::max(worst, std::abs(stress / 100e3 - 1));
+  };
+  run(scene, state, observer);
   EXPECT_LT(most, 1.02 * 100e3);
   EXPECT_LT(worst, 5e-3);
   EXPECT_NEAR(contact_stress(state)(2, 2), 100e3, 1e-2 * 100e3);  // inside as on the boundary
@@ -141,9 +143,11 @@ TEST(Ledger, ClosesWithWallsServoAndRings) {
     if (rings) scene.specimen.count = 480;
     State state = rings ? cylinder_state(scene, 8e-3, 8e-3) : test::state_of(scene);
     EnergyTable before;
-    run(scene, state, {.stage_end = [&](const State& s, const StageSpec& stage) {
-          if (stage.name == "load") before = energies(scene, s);
-        }});
+    RunObserver observer;
+    observer.stage_end = [&](const State& s, const StageSpec& stage) {
+      if (stage.name == "load") before = energies(scene, s);
+    };
+    run(scene, state, observer);
     const EnergyTable after = energies(scene, state);
     EXPECT_GT(after.work - before.work, 1e-6);
     EXPECT_NEAR(after.residual, before.residual, 1e-4 * (after.work - before.work)) << rings;
@@ -267,7 +271,7 @@ double bisected_limit(const Scene& prepared, const State& start, double guess) {
       return sum;
     };
     const double before = speed();
-    for (int k = 0; k < 3000; ++k) {
+    for (int k = 0; k < 6000; ++k) {
       engine.step(dt, TallyLevel::none);
       control.drive(state, dt);
       if (speed() > 1e6 * before) return true;
