@@ -59,8 +59,8 @@ void visit_contacts(Archive& a, C& contacts) {
 
 template <class Archive, class L>
 void visit_list(Archive& a, L& list) {
-  auto& [begin, j, image, skin, contact_skin, longest, used, grown, reference, reference_cell, builds, refreshes, refreshed] =
-      list;
+  auto& [begin, j, image, skin, contact_skin, longest, used, grown, reference, reference_cell, builds, refreshes,
+         refreshed] = list;
   a.array("list/begin", "-", begin);
   a.array("list/j", "-", j);
   a.array("list/image", "-", image);

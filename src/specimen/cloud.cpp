@@ -164,10 +164,10 @@ Packing make_cloud(std::span<const double> radii, const CloudSpec& spec, Random&
 
   Cloud cloud(radii, packing);
   if (!cloud.insert(random) && !cloud.push_apart())
-    throw RunError(
-        fmt::format("cloud of {} grains: solid fraction {:.4g} not reached without overlap; "
-                    "lower specimen.solid_fraction, or enlarge its box, and compress the cloud instead",
-                    radii.size(), solid_volume(radii, spec.dimension) / (packing.box.x * packing.box.y * packing.box.z)));
+    throw RunError(fmt::format(
+        "cloud of {} grains: solid fraction {:.4g} not reached without overlap; "
+        "lower specimen.solid_fraction, or enlarge its box, and compress the cloud instead",
+        radii.size(), solid_volume(radii, spec.dimension) / (packing.box.x * packing.box.y * packing.box.z)));
   packing.position = cloud.take_positions();
   return packing;
 }

@@ -98,7 +98,7 @@ const std::vector<SceneCase> scene_cases{
      "record, rotation, seed, settings, specimen, stage, timestep, title"},
     {7, "[contct]", "s.toml:7: contct is not a known key; did you mean \"contact\"?"},
     {11, "count = 100\ncells = [1, 1, 1]",
-     "s.toml:12: specimen.cells is not a known key; known here: aspect, coarse_count, count, "
+     "s.toml:12: specimen.cells is not a known key; known here: aspect, box, coarse_count, count, "
      "expand_to, grading, scale, solid_fraction, source"},
     {20, "until = { stress_eror = 1e-3 }",
      "s.toml:20: stage[1].until.stress_eror is not a known key; did you mean \"stress_error\"?"},

@@ -40,7 +40,8 @@ grading = { min_radius = 0.8e-3, max_radius = 1.2e-3 }
 solid_fraction = 0.5
 )";
 
-const std::string smooth = "[material.smooth]\nnormal_stiffness = 1e6\nshear_stiffness = 7e5\ndensity = 2650\nfriction = 0\n";
+const std::string smooth =
+    "[material.smooth]\nnormal_stiffness = 1e6\nshear_stiffness = 7e5\ndensity = 2650\nfriction = 0\n";
 const std::string box = "[boundary]\ntype = \"box\"\n", smooth_box = smooth + box + "wall_material = \"smooth\"\n";
 const std::string load = R"(
 [[stage]]
@@ -83,10 +84,11 @@ void run(const Scene& scene, State& state, const RunObserver& observer = {}) {
 }
 
 TEST(Servo, HoldsItsTargetWithoutOvershoot) {
-  const Scene scene = parse_scene(
-      grains + smooth_box + load + "[[stage]]\nname = \"hold\"\nlocal_damping = 0.4\nbody = { z_high = { stress = 100e3 } }\n" +
-          "until = { steps = 3000 }\n",
-      "a.toml");
+  const Scene scene =
+      parse_scene(grains + smooth_box + load +
+                      "[[stage]]\nname = \"hold\"\nlocal_damping = 0.4\nbody = { z_high = { stress = 100e3 } }\n" +
+                      "until = { steps = 3000 }\n",
+                  "a.toml");
   State state = test::state_of(scene);
   double most = 0, worst = 0;
   RunObserver observer;
@@ -102,17 +104,19 @@ TEST(Servo, HoldsItsTargetWithoutOvershoot) {
 }
 
 TEST(Servo, UnreachableTargetIsSaid) {
-  const Scene scene = parse_scene(grains + box +
-                                      "[[stage]]\nname = \"load\"\nbody = { z_high = { stress = 1e5, max_speed = 1e-6 } }\n"
-                                      "until = { stress_error = 1e-3 }\nmax_steps = 50\n",
-                                  "a.toml");
+  const Scene scene =
+      parse_scene(grains + box +
+                      "[[stage]]\nname = \"load\"\nbody = { z_high = { stress = 1e5, max_speed = 1e-6 } }\n"
+                      "until = { stress_error = 1e-3 }\nmax_steps = 50\n",
+                  "a.toml");
   State state = test::state_of(scene);
   EXPECT_THROW(run(scene, state), RunError);
 }
 
 TEST(Servo, NeedsAnAreaForAStress) {
   const Scene scene = parse_scene(
-      grains + "[boundary]\ntype = \"free\"\n[[boundary.wall]]\nname = \"lid\"\npoint = [0, 0, 1]\nnormal = [0, 0, -1]\n" +
+      grains +
+          "[boundary]\ntype = \"free\"\n[[boundary.wall]]\nname = \"lid\"\npoint = [0, 0, 1]\nnormal = [0, 0, -1]\n" +
           "[[stage]]\nname = \"load\"\nbody = { lid = { stress = 1e5 } }\nuntil = { steps = 5 }\n",
       "a.toml");
   State state = test::state_of(scene);
@@ -155,10 +159,10 @@ TEST(Ledger, ClosesWithWallsServoAndRings) {
 }
 
 TEST(Glue, GrainsMoveWithTheirPlaten) {
-  const Scene scene =
-      parse_scene(grains + box + load + "[[stage]]\nname = \"shear\"\nglue = [\"z_low\", \"z_high\"]\nlocal_damping = 0.4\n" +
-                      "body = { z_high = { stress = 100e3, velocity = [0.05, 0, 0] } }\nuntil = { steps = 2000 }\n",
-                  "a.toml");
+  const Scene scene = parse_scene(
+      grains + box + load + "[[stage]]\nname = \"shear\"\nglue = [\"z_low\", \"z_high\"]\nlocal_damping = 0.4\n" +
+          "body = { z_high = { stress = 100e3, velocity = [0.05, 0, 0] } }\nuntil = { steps = 2000 }\n",
+      "a.toml");
   State state = test::state_of(scene);
   run(scene, state);
   ASSERT_GT(state.glued.size(), 10u);
@@ -244,7 +248,9 @@ Bordered bordered(const Scene& scene, const State& state, const std::vector<Dire
 double limit_of(const Eigen::MatrixXd& k, const Eigen::VectorXd& mass) {
   const Eigen::VectorXd root = mass.cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = root.asDiagonal() * k * root.asDiagonal();
-  return 2 / std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff());
+  return 2 /
+         std::sqrt(
+             Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff());
 }
 
 /// Largest stable step of a run beside its bodies: servos aim at the forces they feel, so that all is in balance.
@@ -319,7 +325,8 @@ TEST(Step, BesideFreeRings) {
   for (auto& body : scene.boundary.bodies) body.mass = 2e-5;  // hardly more than a grain: rings matter
   const State state = prepared(scene, cylinder_state(scene, 8e-3, 8e-3));
   std::vector<Direction> directions;
-  for (Index ring = 2; ring < 5; ++ring) directions.push_back({ring, {1, 0, 0}}), directions.push_back({ring, {0, 1, 0}});
+  for (Index ring = 2; ring < 5; ++ring)
+    directions.push_back({ring, {1, 0, 0}}), directions.push_back({ring, {0, 1, 0}});
   Bordered b = bordered(scene, state, directions);
   b.mass.tail(6).setConstant(2e-5);
   const Bordered cap = bordered(scene, state, {{1, {0, 0, 1}}});  // the servo, as above

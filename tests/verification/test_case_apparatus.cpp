@@ -10,9 +10,10 @@ namespace {
 using eg::test::CaseRun;
 
 TEST(DirectShear, ReducedBoxReachesItsStrength) {
-  const CaseRun run("direct_shear",
-                    "--set specimen.count=700 specimen.grading.radius=2.5e-3 stage[1].body.lower.velocity=[0.1,0,0] "
-                    "stage[1].until.displacement=3e-3");
+  const CaseRun run(
+      "direct_shear",
+      "--set specimen.count=700 --set specimen.grading.radius=2.5e-3 --set stage[2].body.lower.velocity=[0.1,0,0] "
+      "--set stage[2].until.displacement=3e-3");
   ASSERT_TRUE(run.complete());
   const auto shear = run.column("upper_force_x"), lid = run.column("lid_force_z"), stage = run.column("stage");
   double most = 0;
