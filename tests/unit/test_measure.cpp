@@ -223,7 +223,7 @@ TEST(Stress, Energies) {
   state.grains.spin = {{0, 2, 0, 0.25}, {1, 1, 1, 0}};
   EXPECT_DOUBLE_EQ(kinetic_energy(state), 25 + 8);
   ContactPoint c = link(0, 1);
-  c.normal_energy = 2, c.normal.tangential = 4, c.shear = {2, 0, 0};
+  c.normal_energy = 2, c.shear_energy = 0.5;
   EXPECT_DOUBLE_EQ(elastic_energy(std::vector{c}), 2.5);
   EXPECT_DOUBLE_EQ(inertial_number(-2, 1e-3, 2500, 1e4), 2e-3 * 0.5);
 }
