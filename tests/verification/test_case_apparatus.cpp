@@ -23,4 +23,17 @@ TEST(DirectShear, ReducedBoxReachesItsStrength) {
   EXPECT_NEAR(run.column("lid_stress").back(), 164e3, 0.05 * 164e3);
 }
 
+TEST(PlaneStrain, ReducedCalibrationPeaksAndDilates) {
+  const CaseRun run("plane_strain_calibration", "--set specimen.count=1200 --set stage[3].until.displacement=1.2e-3");
+  ASSERT_TRUE(run.complete());
+  const auto axial = run.column("z_high_stress"), lateral = run.column("y_high_stress"), e = run.column("void_ratio"),
+             stage = run.column("stage");
+  double most = 0, densest = 9;
+  for (std::size_t k = 0; k < axial.size(); ++k)
+    if (stage[k] == 3) most = std::max(most, axial[k]), densest = std::min(densest, e[k]);
+  EXPECT_NEAR(most, 1150e3, 0.15 * 1150e3);
+  EXPECT_NEAR(lateral.back(), 275e3, 0.01 * 275e3);
+  EXPECT_GT(e.back(), densest + 5e-3);
+}
+
 }  // namespace
