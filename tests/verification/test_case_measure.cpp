@@ -108,6 +108,50 @@ TEST_F(MeasureCommand, ZonesShareOutTheGrains) {
   EXPECT_EQ(layers["zones"][1]["container"]["axis"], "x");
 }
 
+TEST_F(MeasureCommand, ASnapshotIsComparedWithAnEarlierOne) {
+  const test::CaseRun run(
+      "demo", "--set specimen.count=200 --set 'stage[1].record={every_steps=100,snapshot_every_steps=400}'");
+  ASSERT_TRUE(run.complete());
+  std::string early;  // the first snapshot on the way
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::filesystem::path(run.file("final.h5")).parent_path()))
+    if (const auto name = entry.path().filename().string();
+        name.starts_with("step_") && (early.empty() || name < early))
+      early = name;
+  ASSERT_FALSE(early.empty());
+  const std::string compare = run.file("final.h5") + " --since " + run.file(early.c_str());
+  const json j = measure(compare + " --gauge 1e-3,1e-3,1e-3 --sphere 0,0,0,1e-3 --fields " + file("fields.vtp"));
+  ASSERT_TRUE(j.is_object());
+  EXPECT_EQ(j["since"]["particles"], 200);
+  // the cell has become smaller alike in all directions; grains add their own part
+  const auto strain = run.column("strain_x"), steps = run.column("step");
+  double before = 0;
+  for (std::size_t k = 0; k < steps.size(); ++k)
+    if (steps[k] <= std::stod(early.substr(5))) before = strain[k];
+  const double expected = 1 - std::exp(before - strain.back());
+  ASSERT_GT(expected, 1e-3);
+  for (const auto* axis : {"strain_x", "strain_y", "strain_z"})
+    EXPECT_NEAR(j["since"][axis].get<double>() / expected, 1, 0.3) << axis;
+  EXPECT_GT(j["gauge_1"]["displacement"].get<double>(), 0);
+  EXPECT_NEAR(j["sphere_1"]["volumetric_strain"].get<double>() / (3 * expected), 1, 0.7);
+  EXPECT_LT(j["shear_band"]["explained"].get<double>(), 0.5);
+  for (const auto* field : {"displacement", "fluctuation", "strain", "volumetric_strain", "shear_strain", "rotation"})
+    EXPECT_NE(read_file(file("fields.vtp")).find("Name=\"" + std::string(field) + "\""), std::string::npos) << field;
+  const std::string text = read_file(EIGENGRAIN_SOURCE_DIR "/docs/measures.md");
+  for (const auto* section : {"since", "shear_band", "gauge_1"})
+    for (const auto& [key, value] : j.at(section).items()) {
+      const auto stem = key.substr(0, key.find_last_of('_'));
+      EXPECT_TRUE(text.find("`" + key + "`") != std::string::npos || text.find("`" + stem + "_") != std::string::npos)
+          << key;
+    }
+  for (const auto* plot : {"shear-slice", "displacement-slice", "force-slice", "void-slice"}) {
+    output("measure " + compare + " --plot " + plot + " --slice z --figure " + file(std::string(plot) + ".svg"));
+    EXPECT_GT(std::filesystem::file_size(file(std::string(plot) + ".svg")), 1000u) << plot;
+  }
+  output("measure " + run.file("final.h5") + " --void-map " + file("voids.vti"));
+  EXPECT_NE(read_file(file("voids.vti")).find("Name=\"void_ratio\""), std::string::npos);
+}
+
 TEST_F(MeasureCommand, HistoriesArePlottedAndAveraged) {
   std::filesystem::create_directories(folder / "a");
   const std::string history = file("a/history.csv");
