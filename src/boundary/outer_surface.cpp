@@ -33,7 +33,7 @@ Points points_of(const State& state) {
     std::vector<std::pair<Vec3, std::uint64_t>> feet{{position[g].vec(), 0}};
     for (std::size_t k = 0; k < planes.size(); ++k) {
       const double height = dot(position[g].vec() - planes[k]->point, planes[k]->normal);
-      if (height > 2 * position[g].w + mean) continue;
+      if (height > position[g].w + mean) continue;
       for (std::size_t f = 0, count = feet.size(); f < count; ++f) {
         const auto [x, on] = feet[f];
         feet.push_back({x - planes[k]->normal * dot(x - planes[k]->point, planes[k]->normal), on | 1ull << k});
@@ -97,7 +97,9 @@ class Carving {
   }
 
   bool passes(const std::array<Index, 3>& p, double probe) const {
-    const auto radius = [&](std::size_t k) { return state_.grains.radius(points_.grain[p[k]]); };
+    const auto radius = [&](std::size_t k) {
+      return points_.planes[p[k]] == 0 ? state_.grains.radius(points_.grain[p[k]]) : 0.0;
+    };
     const auto at = [&](std::size_t k) { return points_.at[p[k]]; };
     if (dimension_ == 2) return 0.5 * (norm(at(1) - at(0)) - radius(0) - radius(1)) > probe;
     const Vec3 a = at(1) - at(0), b = at(2) - at(0);

@@ -16,7 +16,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 std::size_t body_named(BoundarySpec& b, const std::string& name, const std::string& group = {}) {
   for (std::size_t k = 0; k < b.bodies.size(); ++k)
     if (b.bodies[k].name == name) return k;
-  b.bodies.push_back({.name = name, .group = group, .velocity = {}});
+  b.bodies.push_back({.name = name, .group = group, .velocity = {}, .material = {}});
   return b.bodies.size() - 1;
 }
 

@@ -15,6 +15,7 @@ using namespace eg;
 namespace {
 
 constexpr double radius = 1e-3, pressure = 50e3;
+constexpr double wide = 4e-3;  // probe for grains thrown at random
 
 /// A scene whose one stage presses with `pressure` on grains between planes z = 0 and z = height (2D: y).
 Scene pressed(int dimension) {
@@ -71,12 +72,13 @@ Vec3 on(const State& state, Index grain) {
 TEST(Membrane, ClosesAroundFreeGrains) {
   for (const int dimension : {2, 3}) {
     SCOPED_TRACE(dimension);
-    const Scene scene = pressed(dimension);
+    Scene scene = pressed(dimension);
+    scene.boundary.membrane->probe = wide;
     State state = test::cluster(scene, 300, 5);
     lay_membrane(scene, state);
     EXPECT_GT(state.applied.size(), 20u);
     EXPECT_LT(norm(total(state)), 1e-12 * magnitude(state));
-    const OuterSurface surface = outer_surface(state, dimension == 3 ? radius : radius / 2);
+    const OuterSurface surface = outer_surface(state, wide);
     Vec3 sum;
     double twice = 0;  // Gauss: ∮ x·n dA = dimension × volume
     for (const auto& f : surface.facets) {
@@ -93,14 +95,15 @@ TEST(Membrane, ClosesAroundFreeGrains) {
 
 // The sum of what the membrane does to the grains, and of what the same pressure would do to the ends.
 TEST(Membrane, ClosesOnPlatens) {
-  const Scene scene = pressed(3);
+  Scene scene = pressed(3);
+  scene.boundary.membrane->probe = wide;
   State state = test::cluster(scene, 300, 6);
   double low = 1, high = -1;
   for (const auto& p : state.grains.position) low = std::min(low, p.z - p.w), high = std::max(high, p.z + p.w);
   test::add_plane(state, {0, 0, low}, {0, 0, 1}), test::add_plane(state, {0, 0, high}, {0, 0, -1});
   lay_membrane(scene, state);
   Vec3 ends;
-  for (const auto& f : outer_surface(state, radius).facets)
+  for (const auto& f : outer_surface(state, wide).facets)
     if (f.planes != 0) ends += f.outward(3);
   EXPECT_GT(std::abs(ends.z), 0);
   EXPECT_NEAR(ends.x, 0, 1e-18);
