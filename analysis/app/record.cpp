@@ -156,6 +156,13 @@ void add_body_columns(Columns& c, const Scene& scene) {
   }
 }
 
+void add_membrane_columns(Columns& c, int dimension) {
+  const bool solid = dimension == 3;
+  c.push_back({{"membrane_stress", solid ? "Pa" : "N/m"}, [](const RowSource& r) { return r.state.membrane.stress; }});
+  c.push_back({{"membrane_area", solid ? "m2" : "m"}, [](const RowSource& r) { return r.state.membrane.area; }});
+  c.push_back({{"membrane_volume", solid ? "m3" : "m2"}, [](const RowSource& r) { return r.state.membrane.volume; }});
+}
+
 Columns columns_of(const Scene& scene) {
   const std::string joule = scene.dimension == 3 ? "J" : "J/m";
   Columns c;
@@ -165,6 +172,7 @@ Columns columns_of(const Scene& scene) {
   add_fabric_columns(c, scene.dimension);
   add_body_columns(c, scene);
   if (std::ranges::any_of(scene.stages, [](const StageSpec& s) { return s.bond.has_value(); })) add_bond_columns(c);
+  if (scene.boundary.membrane) add_membrane_columns(c, scene.dimension);
   if (scene.energy) add_energy_columns(c, joule);
   return c;
 }

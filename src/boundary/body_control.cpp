@@ -52,7 +52,8 @@ double round_area(const Scene& scene, const State& state, std::size_t body) {
   return spec.share[1] * wall_of(state, body, Wall::cylinder)->radius * height;
 }
 
-/// Across `along`: of a ring between a hollow cylinder with that axis and a solid one, else of the box between planes.
+/// Across `along`: of a ring between a hollow cylinder with that axis and a solid one, else the mean section inside a
+/// membrane, else of the box between planes.
 double flat_area(const Scene& scene, const State& state, const Vec3& along) {
   double outer = 0, inner = 0, angle = 0;
   for (const Wall& wall : state.walls)
@@ -64,6 +65,7 @@ double flat_area(const Scene& scene, const State& state, const Vec3& along) {
   if (outer > 0) return 0.5 * angle * (outer * outer - inner * inner);
   const int axis = main_axis(along);
   if (axis < 0) return not_given;
+  if (state.membrane.volume > 0) return state.membrane.volume / span(state, axis);
   double area = 1;
   for (int k = 0; k < state.dimension; ++k)
     if (k != axis) area *= span(state, k);
@@ -145,7 +147,23 @@ void BodyControl::drive(State& state, double dt) const {
   }
 }
 
+/// Takes away all surfaces of these bodies.
+static void remove_walls(const std::vector<std::size_t>& bodies, State& state) {
+  std::vector<Index> renumbered;
+  std::vector<Wall> kept;
+  for (const Wall& wall : state.walls) {
+    const bool gone = std::ranges::find(bodies, wall.body) != bodies.end();
+    renumbered.push_back(gone ? no_index : static_cast<Index>(kept.size()));
+    if (!gone) kept.push_back(wall);
+  }
+  state.walls = std::move(kept);
+  std::erase_if(state.wall_contacts, [&](const WallContact& c) { return renumbered[c.wall] == no_index; });
+  for (auto& c : state.wall_contacts) c.wall = renumbered[c.wall];
+  for (const std::size_t b : bodies) state.bodies[b] = Body{};
+}
+
 void begin_body_stage(const Scene& scene, State& state) {
+  remove_walls(scene.stages[state.stage].removed, state);
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     Body& body = state.bodies[b];
     const BodyDrive drive = drive_of(scene, state, b);

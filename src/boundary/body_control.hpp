@@ -23,7 +23,7 @@ class BodyControl {
   std::vector<BodyDrive> drives_;  ///< one a body
 };
 
-/// A stage begins: ways are counted from here, and bodies are set free or held.
+/// A stage begins: ways are counted from here, bodies are set free or held, walls that it removes are taken away.
 void begin_body_stage(const Scene& scene, State& state);
 
 /// Grains that touch one of the bodies in `glue` become part of it.

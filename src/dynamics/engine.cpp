@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "boundary/membrane.hpp"
 #include "dynamics/bonds.hpp"
 #include "measure/volume.hpp"
 #include "search/neighbours.hpp"
@@ -33,6 +34,7 @@ Engine::Engine(const Scene& scene, State& state, bool scalar) : scene_(scene), s
   state_.contacts.history_vectors = loop_->history_vectors(), state_.contacts.bond_value = loop_->bond_value();
   const auto [skin, contact_skin] = default_skins(state_);
   rebuild_neighbours(state_, skin, contact_skin);
+  lay_membrane(scene_, state_);
   refresh_workspace();
   forces(0, TallyLevel::works);
 }
@@ -87,6 +89,7 @@ void Engine::forces(double dt, TallyLevel tally, const AfterChunk& after) {
   work_.clear();
   Tally now;
   if (!state_.walls.empty()) now = loop_->walls(state_, work_, dt, options_);
+  add_applied();
   const Tally grains = loop_->contacts(state_, work_, dt, options_, state_.glued.empty() ? after : AfterChunk{});
   if (!state_.glued.empty()) {
     weigh_glued();
@@ -105,7 +108,14 @@ void Engine::forces(double dt, TallyLevel tally, const AfterChunk& after) {
   e.shear_work += now.shear_work, e.friction += now.friction, e.viscous_damping += now.viscous;
   for (std::size_t k = 0; k < 9; ++k)
     e.boundary -= 0.5 * (virial_before.a[k] + virial.a[k]) * state_.cell.rate.a[k] * dt;
-  e.boundary += 0.5 * (power_before + body_power(state_)) * dt;
+  e.boundary += 0.5 * (power_before + body_power(state_)) * dt + 0.5 * applied_work(state_, dt);
+}
+
+void Engine::add_applied() {
+  for (const auto& f : state_.applied) {
+    Quad& row = work_.rows[work_.stride * f.grain];
+    row.set(row.vec() + f.force);
+  }
 }
 
 /// What grains receive from driven bodies [W]; the energy of bodies that go where forces take them is the system's own.
@@ -137,14 +147,19 @@ void Engine::weigh_glued() {
 
 void Engine::drift() {
   const double dt = state_.dt;
+  if (scene_.energy) state_.ledger.boundary += 0.5 * applied_work(state_, dt);  // the other half: forces()
   for (const auto& g : state_.glued) state_.grains.velocity[g.grain].set(state_.bodies[g.body].velocity);
   travelled_ += (travelled_ * norm(state_.cell.rate) + eg::drift(state_, dt)) * dt;
   if (used_skin(state_, travelled_) > 0.999 * state_.list.contact_skin) {  // rounding aside, the bound tells
     const double begin = omp_get_wtime();
     travelled_ = displacement(state_);
-    if (update_lists(state_, travelled_)) refresh_workspace(), travelled_ = 0;
+    if (update_lists(state_, travelled_)) {
+      lay_membrane(scene_, state_);
+      refresh_workspace(), travelled_ = 0;
+    }
     upkeep_ += omp_get_wtime() - begin;
   }
+  if (state_.membrane.stress != membrane_stress(scene_, state_)) lay_membrane(scene_, state_);
   last_dt_ = dt;
   state_.time += dt;
   ++state_.step;

@@ -50,6 +50,7 @@ class Engine {
   void forces(double dt, TallyLevel tally, const AfterChunk& after);
   void end_kick(double next_dt);
   void weigh_glued();
+  void add_applied();
   static double body_power(const State& state);
 
   const Scene& scene_;

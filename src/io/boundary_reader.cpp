@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -15,7 +16,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 std::size_t body_named(BoundarySpec& b, const std::string& name, const std::string& group = {}) {
   for (std::size_t k = 0; k < b.bodies.size(); ++k)
     if (b.bodies[k].name == name) return k;
-  b.bodies.push_back({.name = name, .group = group, .velocity = {}});
+  b.bodies.push_back({.name = name, .group = group, .velocity = {}, .material = {}});
   return b.bodies.size() - 1;
 }
 
@@ -126,7 +127,7 @@ MeshSpec read_mesh(const TomlReader& t, const Scene& scene, BoundarySpec& b) {
   return mesh;
 }
 
-void read_body_table(const TomlReader& t, BoundarySpec& b) {
+void read_body_table(const TomlReader& t, const Scene& scene, BoundarySpec& b) {
   for (const auto& [name, body] : t.named_tables()) {
     BodySpec* found = nullptr;
     for (auto& spec : b.bodies)
@@ -134,8 +135,18 @@ void read_body_table(const TomlReader& t, BoundarySpec& b) {
     if (!found) throw t.error(name, "is not the name of a wall, mesh or ring", "name a body that the boundary has");
     body.number("mass", found->mass, positive);
     body.number("area", found->area, positive);
+    const bool of_box = b.kind == BoundarySpec::Kind::box && found < &b.bodies[0] + 2 * scene.dimension;
+    if (body.choice("material", found->material, material_names(scene)) && !of_box)
+      throw body.error("material", "is read for the sides of a box", "give it to the wall or mesh");
     body.finish();
   }
+}
+
+MembraneSpec read_membrane(const TomlReader& t) {
+  MembraneSpec membrane;
+  t.number("probe", membrane.probe, positive);
+  t.finish();
+  return membrane;
 }
 
 void check_names(const TomlReader& t, const BoundarySpec& b) {
@@ -225,6 +236,38 @@ BodyDrive read_drive(const TomlReader& t, const Scene& scene, std::size_t body) 
   return drive;
 }
 
+std::vector<std::size_t> named_bodies(const TomlReader& stage, std::string_view key, const BoundarySpec& b) {
+  std::vector<std::string> names;
+  stage.texts(key, names);
+  std::vector<std::size_t> all;
+  for (const auto& name : names) {
+    const auto found = bodies_of(b, name);
+    if (found.empty()) throw stage.error(key, fmt::format("names \"{}\", which is no body", name), known_bodies(b));
+    all.insert(all.end(), found.begin(), found.end());
+  }
+  return all;
+}
+
+/// In this stage or one before.
+bool removed(const Scene& scene, const StageSpec& stage, std::size_t body) {
+  const auto in = [body](const StageSpec& s) { return std::ranges::find(s.removed, body) != s.removed.end(); };
+  return in(stage) || std::ranges::any_of(scene.stages, in);
+}
+
+/// A stage that follows one with pressure must say how it goes on.
+void read_membrane_stress(const TomlReader& stage, const Scene& scene, StageSpec& out) {
+  const auto table = stage.table("membrane");
+  if (table && !scene.boundary.membrane)
+    throw stage.error("membrane", "needs a membrane", "add [boundary.membrane] to the scene");
+  if (!table && !scene.stages.empty() && scene.stages.back().membrane_stress > 0)
+    throw stage.error("membrane",
+                      fmt::format("is missing, though stage \"{}\" before has a pressure", scene.stages.back().name),
+                      "say membrane = { stress = … }, 0 to take it off");
+  if (!table) return;
+  table->number("stress", out.membrane_stress, non_negative, required);
+  table->finish();
+}
+
 }  // namespace
 
 std::vector<std::string> material_names(const Scene& scene) {
@@ -243,33 +286,33 @@ void read_boundary(const TomlReader& t, Scene& scene) {
   } else if (t.has("wall_material")) {
     throw t.error("wall_material", "is read with type = \"box\" only", "remove one of the two");
   }
-  for (const char* key : {"wall", "rings", "mesh"})
+  for (const char* key : {"wall", "rings", "mesh", "membrane"})
     if (b.kind == Kind::periodic && t.has(key))
       throw t.error(key, "cannot stand in a cell that is periodic in every direction",
                     "set boundary.type to \"free\" or \"box\"");
   for (const auto& wall : t.tables("wall")) b.walls.push_back(read_wall(wall, scene, b));
   for (const auto& rings : t.tables("rings")) read_rings(rings, scene, b);
   for (const auto& mesh : t.tables("mesh")) b.meshes.push_back(read_mesh(mesh, scene, b));
-  if (const auto bodies = t.table("body")) read_body_table(*bodies, b);
+  if (const auto bodies = t.table("body")) read_body_table(*bodies, scene, b);
+  if (const auto membrane = t.table("membrane")) b.membrane = read_membrane(*membrane);
   check_names(t, b);
   t.finish();
 }
 
 void read_bodies(const TomlReader& stage, const Scene& scene, StageSpec& out) {
   const BoundarySpec& b = scene.boundary;
+  out.removed = named_bodies(stage, "remove", b);
   if (const auto table = stage.table("body"))
     for (const auto& [name, body] : table->named_tables()) {
       const auto found = bodies_of(b, name);
       if (found.empty()) throw table->error(name, "is no body of the boundary", known_bodies(b));
-      for (const std::size_t k : found) out.bodies.push_back(read_drive(body, scene, k));
+      for (const std::size_t k : found) {
+        if (removed(scene, out, k)) throw table->error(name, "has been removed", "drive it in stages before that only");
+        out.bodies.push_back(read_drive(body, scene, k));
+      }
     }
-  std::vector<std::string> glue;
-  stage.texts("glue", glue);
-  for (const auto& name : glue) {
-    const auto found = bodies_of(b, name);
-    if (found.empty()) throw stage.error("glue", fmt::format("names \"{}\", which is no body", name), known_bodies(b));
-    out.glue.insert(out.glue.end(), found.begin(), found.end());
-  }
+  out.glue = named_bodies(stage, "glue", b);
+  read_membrane_stress(stage, scene, out);
 }
 
 }  // namespace eg

@@ -170,6 +170,20 @@ void visit_glued(Archive& a, G& glued) {
       "glued/body", "-", glued, [](auto& g) -> auto& { return g.body; });
 }
 
+template <class Archive, class M, class F>
+void visit_membrane(Archive& a, M& membrane, F& applied) {
+  auto& [stress, area, volume, solid] = membrane;
+  a.value("membrane/stress", "Pa", stress);
+  a.value("membrane/area", "m^2", area);
+  a.value("membrane/volume", "m^3", volume);
+  a.value("membrane/solid", "m^3", solid);
+  [[maybe_unused]] const auto [grain, force] = AppliedForce{};  // all its fields
+  a.column(
+      "applied/grain", "-", applied, [](auto& f) -> auto& { return f.grain; });
+  a.column(
+      "applied/force", "N", applied, [](auto& f) -> auto& { return f.force; });
+}
+
 template <class Archive, class L>
 void visit_ledger(Archive& a, L& ledger) {
   auto& [shear_work, friction, local_damping, mass_damping, viscous_damping, boundary, body] = ledger;
@@ -224,9 +238,9 @@ void visit_bonds(Archive& a, B& bonds) {
 /// structures, projection) and history(name, unit, contacts); S is State or const State.
 template <class Archive, class S>
 void visit_state(Archive& a, S& state) {
-  auto& [dimension, time, step, dt, cell, grains, contacts, list, bodies, walls, spokes, wall_contacts, glued, virial,
-         stiffness_sum, ledger, friction, friction_scatter, bonds, stage, stage_step, stage_time, unbalanced, kinetic,
-         policy, servo, cycle, preparation] = state;
+  auto& [dimension, time, step, dt, cell, grains, contacts, list, bodies, walls, spokes, wall_contacts, glued, membrane,
+         applied, virial, stiffness_sum, ledger, friction, friction_scatter, bonds, stage, stage_step, stage_time,
+         unbalanced, kinetic, policy, servo, cycle, preparation] = state;
   a.value("dimension", "-", dimension);
   a.value("time", "s", time);
   a.value("step", "-", step);
@@ -242,6 +256,7 @@ void visit_state(Archive& a, S& state) {
   a.array("spokes", "-", spokes);
   visit_wall_contacts(a, wall_contacts);
   visit_glued(a, glued);
+  visit_membrane(a, membrane, applied);
   a.value("virial", "J", virial);
   a.value("stiffness_sum", "J", stiffness_sum);
   visit_ledger(a, ledger);

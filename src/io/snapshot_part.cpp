@@ -58,6 +58,8 @@ void keep_own(const Hdf5Reader& file, std::size_t first, std::size_t last, std::
   all = std::move(own);
   std::erase_if(state.wall_contacts, [&](const WallContact& c) { return c.grain < first || c.grain >= last; });
   for (auto& c : state.wall_contacts) c.grain -= static_cast<Index>(first);
+  std::erase_if(state.applied, [&](const AppliedForce& f) { return f.grain < first || f.grain >= last; });
+  for (auto& f : state.applied) f.grain -= static_cast<Index>(first);
 }
 
 /// Numbers of the part's grains: its own, then the others that its contacts name, ascending; turns Contacts::j into

@@ -133,6 +133,7 @@ void check_state(const Scene& scene, const State& state, const std::string& file
   check.below("glued/grain", state.glued, state.grains.size(), [](const auto& g) { return g.grain; });
   check.below("glued/body", state.glued, state.bodies.size(), [](const auto& g) { return g.body; });
   check.below("walls/material", state.walls, scene.materials.size(), [](const Wall& w) { return w.material; });
+  check.below("applied/grain", state.applied, state.grains.size(), [](const auto& f) { return f.grain; });
   check.below("wall_contacts/grain", state.wall_contacts, state.grains.size(), [](const auto& c) { return c.grain; });
   check.below("wall_contacts/wall", state.wall_contacts, state.walls.size(), [](const auto& c) { return c.wall; });
   check.length("friction", state.friction.size(), scene.materials.size() * scene.materials.size(), true);

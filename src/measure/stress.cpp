@@ -18,6 +18,7 @@ std::vector<Vec3> net_forces(const State& state, std::span<const ContactPoint> c
   std::vector<Vec3> net(grains.size());
   for (std::size_t i = 0; i < net.size(); ++i)
     if (grains.velocity[i].w > 0) net[i] = (1 / grains.velocity[i].w) * gravity;
+  for (const auto& f : state.applied) net[f.grain] += f.force;
   for (const auto& c : contacts) {
     const Vec3 force = c.force();
     net[c.i] -= force;

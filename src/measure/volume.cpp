@@ -45,6 +45,7 @@ Extent wall_gap(const State& state, int k) {
 }
 
 double specimen_volume(const State& state) {
+  if (state.membrane.volume > 0) return state.membrane.volume;
   Mat3 edges = state.cell.h;
   for (int k = 0; k < state.dimension; ++k)
     if (const double gap = wall_gap(state, k).length(); std::isfinite(gap)) edges(k, k) = gap;
@@ -56,6 +57,7 @@ double specimen_volume(const State& state) {
 }
 
 double solid_volume(const State& state) {
+  if (state.membrane.volume > 0) return state.membrane.solid;
   double sum = 0;
   for (std::size_t i = 0; i < state.grains.size(); ++i) sum += grain_volume(state.dimension, state.grains.radius(i));
   return sum;

@@ -19,10 +19,11 @@ double cap_volume(int dimension, double radius, double height);
 Extent wall_gap(const State&, int k);
 
 /// Volume of the specimen: of the cell; between parallel walls across x, y or z, the innermost ones count, wherever
-/// they have moved.
+/// they have moved; of the inside of a membrane as it was last laid.
 double specimen_volume(const State&);
 
-/// Sum of the grains' own volumes: what overlaps counts twice.
+/// Sum of the grains' own volumes: what overlaps counts twice. Of grains on a membrane, which runs through their
+/// centres, the part inside it.
 double solid_volume(const State&);
 
 /// What contacts make overlap: lenses between grains and caps beyond walls, contact by contact. Where three grains

@@ -62,6 +62,8 @@ void sort_grains(State& state) {
   for (auto& w : state.wall_contacts) w.grain = rank[w.grain];
   for (auto& g : state.glued) g.grain = rank[g.grain];
   std::ranges::sort(state.glued, {}, &GluedGrain::grain);
+  for (auto& f : state.applied) f.grain = rank[f.grain];
+  std::ranges::sort(state.applied, {}, &AppliedForce::grain);
 }
 
 }  // namespace eg

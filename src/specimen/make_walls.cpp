@@ -21,13 +21,16 @@ std::uint16_t material_index(const Scene& scene, const std::string& name) {
 }
 
 void add_box(const Scene& scene, const Vec3& box, State& state) {
-  const auto material = material_index(scene, scene.boundary.wall_material);
+  const auto material = [&](Index body) {
+    const auto& own = scene.boundary.bodies[body].material;
+    return material_index(scene, own.empty() ? scene.boundary.wall_material : own);
+  };
   for (int k = 0; k < scene.dimension; ++k) {
     Wall lower, upper;
-    lower.material = upper.material = material;
     lower.normal[k] = 1, upper.normal[k] = -1;
     upper.point[k] = box[k];
     lower.body = static_cast<Index>(2 * k), upper.body = lower.body + 1;
+    lower.material = material(lower.body), upper.material = material(upper.body);
     state.walls.push_back(lower), state.walls.push_back(upper);
   }
 }

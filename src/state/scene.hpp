@@ -104,7 +104,13 @@ struct BodySpec {
   std::string name, group;  ///< group: the stack of rings it is of, or empty
   Vec3 velocity;            ///< [m/s], in stages that do not drive it
   double mass = not_given;  ///< [kg] of a body that moves freely; default: its share of the grains
+  std::string material;     ///< of a plane of the box; empty: BoundarySpec::wall_material
   double area = not_given;  ///< on which it loads grains [m²] (2D: m); default: worked out from the walls
+};
+
+/// [boundary.membrane], around what planes do not cover.
+struct MembraneSpec {
+  double probe = not_given;  ///< radius [m] of the probe that finds its grains; default: mean radius, 2D half of it
 };
 
 /// Bodies of the planes of a box: x_low, x_high, y_low, …
@@ -118,6 +124,7 @@ struct BoundarySpec {
   std::vector<BodySpec> bodies;  ///< box: x_low, x_high, y_low, … first
   std::vector<WallSpec> walls;   ///< further walls: [[boundary.wall]], [[boundary.rings]]
   std::vector<MeshSpec> meshes;
+  std::optional<MembraneSpec> membrane;
 };
 
 /// [damping]
@@ -203,7 +210,9 @@ struct StageSpec {
   std::vector<CellCondition> hold;  ///< as many as components are free
   std::optional<CycleSpec> cycle;
   std::vector<BodyDrive> bodies;
-  std::vector<std::size_t> glue;  ///< bodies to which the grains that touch them are glued as the stage begins
+  std::vector<std::size_t> glue;     ///< bodies to which the grains that touch them are glued as the stage begins
+  std::vector<std::size_t> removed;  ///< bodies whose walls are taken away as the stage begins
+  double membrane_stress = 0;        ///< [Pa] (2D: N/m)
   double max_strain_rate =
       not_given;  ///< cap of what answers stresses [1/s]; default: 10, or ten times the rates driven
   // until (all that are given must hold; time/steps/strain end the stage by themselves)

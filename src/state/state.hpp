@@ -8,6 +8,7 @@
 #include "base/vec.hpp"
 #include "state/cell.hpp"
 #include "state/list.hpp"
+#include "state/membrane.hpp"
 #include "state/wall.hpp"
 
 namespace eg {
@@ -133,6 +134,8 @@ struct State {
   std::vector<Vec3> spokes;  ///< unit vectors along the edges that meet in tips, tip after tip
   std::vector<WallContact> wall_contacts;
   std::vector<GluedGrain> glued;  ///< by grain
+  Membrane membrane;
+  std::vector<AppliedForce> applied;  ///< by grain
   Mat3 virial;               ///< Σ f ⊗ branch over contacts of the last step, f on j [J]; stress is virial/volume
   double stiffness_sum = 0;  ///< Σ kn d² over contacts of the last step [J]
   EnergyLedger ledger;
