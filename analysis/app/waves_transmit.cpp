@@ -94,7 +94,7 @@ void read_traces(TransmitReport& r) {
   r.phase_speed = phase_speed(r.test, r.near, r.far, r.setup.signal.frequency);
   const double top = r.branch ? 1.3 * r.branch->highest() : 4 * r.setup.signal.frequency;
   for (int k = 1; k <= 400; ++k) r.frequencies.push_back(top * k / 400);
-  r.response = response(r.test, 0, std::min<std::size_t>(r.test.traces.size() / 3, 12), r.frequencies);
+  r.response = response(r.test, 2, std::min<std::size_t>(r.test.traces.size() / 3, 14), r.frequencies);
   r.cutoff = cutoff(r.frequencies, r.response);
   if (r.test.spacing == 0) return;
   std::vector<std::span<const double>> all;
@@ -115,6 +115,10 @@ void warn(TransmitReport& r, double length) {
   if (length > 0 && r.setup.duration * r.speed > length - r.test.traces[r.far].distance)
     say("the test lasts until the wave comes back through the periodic cell: shorten --duration or lengthen the "
         "packing");
+  const double f = r.setup.signal.frequency, group = r.branch ? r.branch->group_speed(f) : r.speed;
+  if (r.setup.signal.duration() + r.test.traces[r.far].distance / group > 1.02 * r.setup.duration)
+    say("the test ends before the signal has passed the far receiver, which speeds read from it suffer from: lengthen "
+        "the packing, or take a higher --frequency");
   if (r.test.sliding > 0) say(fmt::format("{:.2g} % of the contacts slide", 100 * r.test.sliding));
 }
 

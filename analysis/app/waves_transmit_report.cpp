@@ -27,10 +27,6 @@ Table arrival_table(const TransmitReport& r) {
 
 double group_speed(const TransmitReport& r) { return r.arrivals.back().speed; }
 
-/// Above the slowest branch of transverse waves another one may carry on; longitudinal waves have but one along an
-/// axis.
-bool top_matters(const TransmitReport& r) { return r.branch && r.setup.axis == r.setup.motion; }
-
 std::string beside(double measured, double exact) {
   return fmt::format("{:.6g} m/s, dispersion {:.6g} m/s ({:+.2f} %)", measured, exact, 100 * (measured / exact - 1));
 }
@@ -76,11 +72,10 @@ std::string text_of(const TransmitReport& r) {
     line("phase speed", fmt::format("{:.6g} m/s", r.phase_speed));
   }
   if (!std::isnan(r.cutoff))
-    line("cut-off",
-         fmt::format("{:.6g} Hz{}", r.cutoff,
-                     top_matters(r) ? fmt::format(", top of the branch {:.6g} Hz ({:+.2f} %)", r.branch->highest(),
-                                                  100 * (r.cutoff / r.branch->highest() - 1))
-                                    : ""));
+    line("cut-off", fmt::format("{:.6g} Hz{}", r.cutoff,
+                                r.branch ? fmt::format(", top of the branch {:.6g} Hz ({:+.2f} %)", r.branch->highest(),
+                                                       100 * (r.cutoff / r.branch->highest() - 1))
+                                         : ""));
   if (const auto ridge = r.ridge_error())
     line("ridge of the map", fmt::format("{} frequencies, {:.2f} % from the dispersion on average, {:.2f} % at most",
                                          ridge->rows, 100 * ridge->mean, 100 * ridge->worst));

@@ -116,25 +116,30 @@ double phase_speed(const Transmission& test, std::size_t from, std::size_t to, d
 
 std::vector<double> response(const Transmission& test, std::size_t from, std::size_t to,
                              std::span<const double> frequencies) {
-  const Spectrum a = spectrum(test.traces[from].u, test.interval), b = spectrum(test.traces[to].u, test.interval);
+  const auto of = [&](std::size_t trace) {  // slow waves still go on at the end: faded out, or they would leak
+    std::vector<double> u = test.traces[trace].u;
+    const auto size = static_cast<double>(u.size());
+    for (std::size_t k = u.size() / 2; k < u.size(); ++k)
+      u[k] *= std::pow(std::sin(pi * static_cast<double>(k) / size), 2);
+    return spectrum(u, test.interval);
+  };
+  const Spectrum source = of(0), a = of(from), b = of(to);
   double most = 0;
-  for (const auto& value : a.value) most = std::max(most, std::abs(value));
+  for (const auto& value : source.value) most = std::max(most, std::abs(value));
   std::vector<double> ratio;
   for (const double f : frequencies)
-    ratio.push_back(std::abs(a.at(f)) > 1e-3 * most ? std::abs(b.at(f)) / std::abs(a.at(f)) : nothing);
+    ratio.push_back(std::abs(source.at(f)) > 0.03 * most ? std::abs(b.at(f)) / std::abs(a.at(f)) : nothing);
   return ratio;
 }
 
 double cutoff(std::span<const double> frequencies, std::span<const double> response) {
-  bool low = false;
-  for (std::size_t k = frequencies.size(); k-- > 0;) {
-    if (std::isnan(response[k])) continue;
-    if (response[k] < 0.5) low = true;
-    if (response[k] >= 0.5) {
-      if (!low || k + 1 >= response.size() || std::isnan(response[k + 1])) return nothing;
-      const double t = (response[k] - 0.5) / (response[k] - response[k + 1]);
-      return frequencies[k] + t * (frequencies[k + 1] - frequencies[k]);
-    }
+  constexpr double half = 0.5, width = 1.1;
+  for (std::size_t k = 0; k + 1 < response.size(); ++k) {
+    if (!(response[k] >= half && response[k + 1] < half)) continue;
+    std::size_t next = k + 1;
+    while (next < response.size() && response[next] < half && frequencies[next] < width * frequencies[k]) ++next;
+    if (next == response.size() || !(response[next] < half)) continue;
+    return std::lerp(frequencies[k], frequencies[k + 1], (response[k] - half) / (response[k] - response[k + 1]));
   }
   return nothing;
 }

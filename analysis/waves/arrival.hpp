@@ -23,11 +23,12 @@ std::vector<Arrival> arrivals(const Transmission& test, std::size_t from, std::s
 /// Phase speed ω/k at a frequency [m/s]: k is the slope of the phase over distance, traces `from` … `to`.
 double phase_speed(const Transmission& test, std::size_t from, std::size_t to, double frequency);
 
-/// |U(to)|/|U(from)| at the frequencies given; NaN where `from` holds less than 1e-3 of its largest amplitude.
+/// |U(to)|/|U(from)| at the frequencies given; NaN where the source holds less than 3 % of its largest amplitude.
 std::vector<double> response(const Transmission& test, std::size_t from, std::size_t to,
                              std::span<const double> frequencies);
 
-/// Highest frequency [Hz] at which the response is a half: above it waves die out. NaN when it does not fall that low.
+/// Lowest frequency [Hz] from which the response is below a half over a tenth of itself and more: waves die out there
+/// (S waves of spheres go on above a gap, where grains turn as they move). NaN when the response does not fall so.
 double cutoff(std::span<const double> frequencies, std::span<const double> response);
 
 /// Ridge of a map: wave number of the largest amplitude at each frequency [rad/m], between the grid's by a parabola;

@@ -25,16 +25,30 @@ double Branch::group_speed(double f) const {
   return 4 * std::numbers::pi * step / (wave_number(f + step) - wave_number(f - step));
 }
 
+namespace {
+
+/// The branch goes on where a wave of that motion lies nearest to its straight continuation `expected` [Hz].
+double nearest(const std::vector<BlochMode>& modes, std::size_t motion, double expected) {
+  double best = std::numeric_limits<double>::infinity();
+  for (const BlochMode& m : modes)
+    if (m.mean[motion] > 1e-9 && std::abs(m.frequency() - expected) < std::abs(best - expected)) best = m.frequency();
+  return best;
+}
+
+}  // namespace
+
 Branch acoustic_branch(const Network& unit, int axis, int motion, double last, int points) {
-  Branch branch;
-  for (int n = 0; n <= points; ++n) {
+  const auto along = static_cast<std::size_t>(motion);
+  Branch branch{{0.0}, {0.0}};
+  for (int n = 1; n <= points; ++n) {
     Vec3 k;
     k[axis] = last * n / points;
     const auto modes = bloch_modes(unit, k);
-    const auto found = std::ranges::find_if(
-        modes, [&](const BlochMode& m) { return m.mean[static_cast<std::size_t>(motion)] > 1e-3; });
-    if (found == modes.end()) break;
-    branch.k.push_back(k[axis]), branch.frequency.push_back(found->frequency());
+    const auto& f = branch.frequency;
+    const auto start = std::ranges::max_element(modes, {}, [&](const BlochMode& m) { return m.mean[along]; });
+    const double next = n == 1 ? start->frequency() : nearest(modes, along, 2 * f.back() - f[f.size() - 2]);
+    if (!std::isfinite(next) || (n > 1 && std::abs(next - f.back()) > 3 * f[1])) break;
+    branch.k.push_back(k[axis]), branch.frequency.push_back(next);
   }
   return branch;
 }

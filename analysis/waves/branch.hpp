@@ -17,8 +17,8 @@ struct Branch {
   double group_speed(double f) const;
 };
 
-/// k from 0 to `last` [rad/m] along `axis`, motion along `motion` (0, 1, 2), `points` + 1 of them. Where no wave moves
-/// the layers so, the branch ends.
+/// k from 0 to `last` [rad/m] along `axis`, motion along `motion` (0, 1, 2), `points` + 1 of them. Begins with the
+/// wave that moves the layers so most and follows it; where no wave moves them so any more, the branch ends.
 Branch acoustic_branch(const Network& unit, int axis, int motion, double last, int points = 400);
 
 }  // namespace eg

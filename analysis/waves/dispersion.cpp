@@ -45,7 +45,10 @@ std::vector<double> long_wave_speeds(const Network& unit, const Vec3& direction,
   const Vec3 k = direction * (q / norm(direction));
   const auto far = acoustic(unit, k), near = acoustic(unit, k * 0.5);
   std::vector<double> speeds;
-  for (std::size_t m = 0; m < far.size(); ++m) speeds.push_back((8 * near[m] - far[m]) / (3 * q));
+  for (std::size_t m = 0; m < far.size(); ++m) {
+    const double speed = (8 * near[m] - far[m]) / (3 * q);
+    speeds.push_back(far[m] > 1e-4 * far.back() ? speed : 0.0);  // round-off of a wave that nothing resists
+  }
   return speeds;
 }
 

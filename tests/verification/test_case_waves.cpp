@@ -48,6 +48,38 @@ TEST(CaseWaves, CutOff) {
   EXPECT_LT(r.at("ridge").at("mean_error").get<double>(), 0.01);
 }
 
+// Its branch ends in pure rotation at the edge of the zone, where another branch, above a gap, takes the translation
+// over.
+TEST(CaseWaves, CutOffOfTransverseWaves) {
+  const auto r =
+      transmit("waves_fcc_column", "--frequency 60e3 --signal ricker --motion x --set specimen.cells=[1,1,100]");
+  ASSERT_TRUE(r.is_object());
+  const auto bands = json::parse(output("waves dispersion " + case_file("waves_fcc_column") +
+                                        " --json --path \"G X\" --points 2 --set specimen.cells=[2,2,2]"));
+  const double top = bands.at("points").at(2).at("frequency_Hz").at(0).get<double>();
+  EXPECT_NEAR(r.at("dispersion").at("highest_Hz").get<double>() / top, 1, 1e-4);  // the branch is drawn in 400 points
+  EXPECT_NEAR(r.at("cutoff_Hz").get<double>() / top, 1, 0.02);
+}
+
+TEST(CaseWaves, CutOffOfOtherLattices) {
+  for (const char* lattice : {"bcc", "fcc-111"}) {
+    const auto r =
+        transmit("waves_fcc_column", "--frequency 80e3 --signal ricker --set specimen.cells=[2,2,80] --set " +
+                                         ("specimen.lattice='\"" + std::string(lattice) + "\"'"));
+    ASSERT_TRUE(r.is_object()) << lattice;
+    EXPECT_NEAR(r.at("cutoff_Hz").get<double>() / r.at("dispersion").at("highest_Hz").get<double>(), 1, 0.02);
+  }
+}
+
+TEST(CaseWaves, SaysWhenTheSignalHasNotPassed) {
+  const auto r = transmit("waves_fcc_column", "--frequency 30e3 --signal ricker --set specimen.cells=[1,1,60]");
+  ASSERT_TRUE(r.is_object());
+  bool said = false;
+  for (const auto& warning : r.at("warnings"))
+    said |= warning.get<std::string>().find("has passed") != std::string::npos;
+  EXPECT_TRUE(said) << r.at("warnings");
+}
+
 TEST(CaseWaves, SizeOfTheSourceReduced) {
   expect_speeds(transmit("waves_fcc_81576", "--frequency 30e3 --motion x --set specimen.cells=[1,2,103]"));
 }
