@@ -129,10 +129,12 @@ std::string run_note(const Scene& scene, const State& state, const RunStatus& st
                      state.dimension == 3 ? "Pa" : "N/m", status.unbalanced, state.dt);
 }
 
-void run_quietly(const Scene& scene, State& state) {
+void run_quietly(const Scene& scene, State& state,
+                 const std::function<void(const State&, const StageSpec&)>& stage_end) {
   Controller controller(scene);
   Progress progress("preparing", 0, "steps");
   RunObserver observer;
+  observer.stage_end = stage_end;
   observer.step = [&](const State& s, const RunStatus& status) {
     progress.update(static_cast<double>(s.step), run_share(scene, s), [&] { return run_note(scene, s, status); });
   };

@@ -1,6 +1,7 @@
 #pragma once
 // From what the user names (scene, snapshot or bare packing) to a scene and a state.
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -50,8 +51,10 @@ Snapshot bare_packing(const std::string& path, const BareFlags& flags);
 /// How much of all stages is done [0, 1]; Progress::unknown unless every stage ends by steps, time or strain.
 double run_share(const Scene& scene, const State& state);
 
-/// Runs the remaining stages with a progress bar and nothing else (for commands that only want the packing).
-void run_quietly(const Scene& scene, State& state);
+/// Runs the remaining stages with a progress bar and nothing else (for commands that only want the packing);
+/// `stage_end` is called at the end of each.
+void run_quietly(const Scene& scene, State& state,
+                 const std::function<void(const State&, const StageSpec&)>& stage_end = {});
 
 /// A progress note of a run: "stage 1/2 compress 43 %: p = 1.00e+05 Pa, unbalanced 1.2e-04, dt = 1e-7 s".
 std::string run_note(const Scene& scene, const State& state, const RunStatus& status);

@@ -8,6 +8,7 @@
 #include "app/packing_input.hpp"
 #include "app/spring_file.hpp"
 #include "app/stiffness_report.hpp"
+#include "app/stiffness_series.hpp"
 #include "assembly/linearise.hpp"
 #include "base/error.hpp"
 #include "base/progress.hpp"
@@ -22,7 +23,7 @@ struct StiffnessFlags {
   PackingFlags packing;
   std::string figure, tables, springs, solver = "auto";
   double tolerance = RelaxationOptions{}.tolerance;
-  bool probe = false;
+  bool probe = false, stages = false;
   std::vector<std::string> directions;
 };
 
@@ -114,8 +115,27 @@ StiffnessReport analyse(const StiffnessFlags& flags, const Snapshot& work) {
   return r;
 }
 
+/// --stages: the same for every stage of a scene, in brief.
+int series_command(const StiffnessFlags& flags) {
+  if (flags.probe || !flags.springs.empty() || !flags.directions.empty())
+    throw input_error(flags.packing.input, 0, "--stages", "gives the isotropic moduli of every stage alone",
+                      "leave out --probe, --springs and --direction, or ask for one snapshot");
+  PackingFlags start = flags.packing;
+  start.initial = true;
+  const Snapshot work = load_packing(start);
+  const StiffnessSeries series = stiffness_series(flags.packing.input, work.scene, work.state, options_of(flags));
+  if (flags.packing.json)
+    fmt::print("{}\n", json_of(series).dump(2));
+  else
+    fmt::print("{}", text_of(series));
+  if (!flags.tables.empty()) write_tables(series, flags.tables);
+  if (!flags.figure.empty()) save_figure(figure_of(series), flags.figure);
+  return series.converged ? 0 : 3;
+}
+
 int stiffness_command(const StiffnessFlags& flags) {
   check_figure(flags.figure);
+  if (flags.stages) return series_command(flags);
   const Snapshot work = load_packing(flags.packing);
   directions_of(flags, work.state.dimension);  // wrong ones are told before the work
   const StiffnessReport report = analyse(flags, work);
@@ -138,6 +158,7 @@ void add_stiffness_command(CLI::App& app, Action& action) {
   auto f = std::make_shared<StiffnessFlags>();
   add_packing_options(*sub, f->packing);
   sub->add_flag("--probe", f->probe, "find the moduli a second time by straining the packing itself, step by step");
+  sub->add_flag("--stages", f->stages, "moduli after every stage of a scene, and their exponents of the mean stress");
   sub->add_option("--direction", f->directions, "E, ν and wave speeds along this one, e.g. 1,1,0; repeatable")
       ->type_size(1)
       ->allow_extra_args(false);

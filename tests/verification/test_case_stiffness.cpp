@@ -54,6 +54,45 @@ TEST(CaseStiffness, ShearedPackingIsStiffestAlongItsFabric) {
             0.7 * j.at("isotropic").at("misfit").get<double>());
 }
 
+// N ∝ overlap^2.590, ^1.583 and ^1.5 make kn ∝ N^0.614, N^0.368 and N^(1/3) (Otsubo et al. 2017); partial slip is in no
+// elastic tensor.
+TEST(CaseStiffness, RoughFccStiffensByTheStagesOfItsLaw) {
+  for (const char* law : {"rough-hertz-mindlin", "rough-hertz-mindlin-deresiewicz", "hertz-mindlin-deresiewicz"}) {
+    const auto at = [&](double pressure) {
+      return stiffness(case_file("rough_surface") + " --initial --set specimen.pressure=" + std::to_string(pressure) +
+                       " --set 'contact.law=\"" + law + "\"'");
+    };
+    // Of C11 d over N, which p d² is in proportion to: the lattice shrinks.
+    const auto exponent = [&](double low, double high) {
+      const json a = at(low), b = at(high);
+      const double shrunk = std::log(b.at("volume").get<double>() / a.at("volume").get<double>()) / 3;
+      const double force = std::log(b.at("mean_stress_Pa").get<double>() / a.at("mean_stress_Pa").get<double>());
+      return (std::log(modulus(b, 0, 0) / modulus(a, 0, 0)) + shrunk) / (force + 2 * shrunk);
+    };
+    const bool smooth = law[0] == 'h';
+    EXPECT_NEAR(exponent(3e3, 2e5), smooth ? 1. / 3 : 1.58979550 / 2.58979550, 1e-4) << law;
+    EXPECT_NEAR(exponent(5e5, 2e7), smooth ? 1. / 3 : 0.58300969 / 1.58300969, 1e-4) << law;
+    EXPECT_NEAR(exponent(4e7, 8e7), 1. / 3, 1e-4) << law;
+  }
+}
+
+TEST(CaseStiffness, RoughRandomPackingStiffensFasterThanASmoothOne) {
+  const auto stages = [](const std::string& law) {
+    return json::parse(output("stiffness " + case_file("stiffness_rough") +
+                              " --stages --json --set specimen.count=200 " + "--set 'contact.law=\"" + law + "\"'"),
+                       nullptr, false)
+        .at("stages");
+  };
+  const json rough = stages("rough-hertz-mindlin"), smooth = stages("hertz-mindlin");
+  ASSERT_EQ(rough.size(), 9u);
+  const auto exponent = [](const json& rows, std::size_t k) { return rows.at(k).at("shear_exponent").get<double>(); };
+  EXPECT_GT(exponent(rough, 2), exponent(smooth, 2) + 0.1);  // 1 to 3 kPa
+  EXPECT_GT(exponent(rough, 2), 0.55);
+  EXPECT_LT(exponent(rough, 8), exponent(rough, 2) - 0.1);  // 1 to 3 MPa
+  EXPECT_NEAR(exponent(rough, 8), exponent(smooth, 8), 0.03);
+  EXPECT_NEAR(exponent(rough, 8), 1. / 3, 0.06);
+}
+
 TEST(CaseStiffness, WallsSeeASymmetricMatrix) {
   const json j = stiffness(case_file("settling_box") + " --set specimen.count=150");
   ASSERT_TRUE(j.is_object());
