@@ -79,8 +79,8 @@ Packing cloud_packing(const Scene& scene, Random& random) {
                     {.dimension = scene.dimension,
                      .solid_fraction = spec.solid_fraction,
                      .aspect = spec.aspect,
-                     .box = spec.box,
-                     .periodic = scene.boundary.kind == BoundarySpec::Kind::periodic},
+                     .periodic = scene.boundary.kind == BoundarySpec::Kind::periodic,
+                     .box = spec.box},
                     random);
 }
 
