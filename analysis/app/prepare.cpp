@@ -59,6 +59,19 @@ Snapshot read_input(const std::string& path, const SceneSettings& settings) {
                     "name it in a scene: [specimen] source = \"file\", path = \"…\"");
 }
 
+namespace {
+
+/// Centres and radii alone.
+Packing bare_grains(const State& state) {
+  Packing packing;
+  packing.dimension = state.dimension;
+  for (int k = 0; k < state.dimension; ++k) packing.box[k] = state.cell.h(k, k);
+  for (const Quad& x : state.grains.position) packing.position.push_back(x.vec()), packing.radius.push_back(x.w);
+  return packing;
+}
+
+}  // namespace
+
 State make_specimen(const Scene& scene) {
   if (scene.specimen.source != SpecimenSpec::Source::file) return make_state(scene, make_packing(scene));
   const std::string path = resolve_path(scene, scene.specimen.path);
@@ -67,6 +80,7 @@ State make_specimen(const Scene& scene) {
   if (state.dimension != scene.dimension)
     throw input_error(scene.file, 0, "specimen.path",
                       fmt::format("is a {}D snapshot in a {}D scene", state.dimension, scene.dimension));
+  if (scene.specimen.trim) return make_state(scene, bare_grains(state));
   state.stage = 0, state.step = 0, state.time = 0, state.ledger = {}, state.policy = {}, state.dt = 0;
   state.friction.clear();
   fit_rotation(scene, state);

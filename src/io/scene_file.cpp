@@ -15,6 +15,7 @@
 #include "io/text_file.hpp"
 #include "io/toml_parse.hpp"
 #include "io/toml_reader.hpp"
+#include "io/trim_reader.hpp"
 
 namespace eg {
 
@@ -191,6 +192,7 @@ void read_specimen(const TomlReader& t, int dimension, SpecimenSpec& s) {
       t.text("path", s.path, required);
       break;
   }
+  if (const auto trim = t.table("trim")) s.trim = read_trim(*trim, dimension);
   t.finish();
 }
 
@@ -232,8 +234,11 @@ void read_top(const TomlReader& top, Scene& scene) {
   top.vector("gravity", scene.dimension, scene.gravity);
   const auto materials = read_materials(top, scene);
   read_contact(*top.table("contact", required), materials, scene);
-  read_specimen(*top.table("specimen", required), scene.dimension, scene.specimen);
+  const auto specimen = *top.table("specimen", required);
+  read_specimen(specimen, scene.dimension, scene.specimen);
   read_boundary(*top.table("boundary", required), scene);
+  if (scene.specimen.trim && scene.boundary.kind == BoundarySpec::Kind::periodic)
+    throw specimen.error("trim", "leaves nothing that is periodic", "set boundary.type to \"box\" or \"free\"");
   if (const auto t = top.table("damping")) read_damping(*t, scene.damping);
   if (const auto t = top.table("timestep")) read_timestep(*t, scene.timestep);
   if (const auto t = top.table("record")) {

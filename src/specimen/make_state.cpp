@@ -12,6 +12,7 @@
 #include "specimen/lattice.hpp"
 #include "specimen/make_walls.hpp"
 #include "state/friction.hpp"
+#include "specimen/trim.hpp"
 
 namespace eg {
 
@@ -100,7 +101,8 @@ void fit_rotation(const Scene& scene, State& state) {
   }
 }
 
-State make_state(const Scene& scene, const Packing& packing) {
+State make_state(const Scene& scene, const Packing& given) {
+  const Packing packing = scene.specimen.trim ? trimmed(scene, given) : given;
   check(scene, packing);
   if (scene.boundary.kind == BoundarySpec::Kind::box) check_inside(scene, packing);
   State state;

@@ -43,6 +43,21 @@ struct Grading {
   }
 };
 
+/// What is left of a packing: the grains inside a box, or inside a cylinder along an axis.
+struct TrimSpec {
+  enum class Shape { box, cylinder };
+  enum class Keep { whole, centre };  ///< grains that lie inside as a whole, or with their centre
+  Shape shape = Shape::box;
+  Keep keep = Keep::whole;
+  Vec3 low{-unbounded, -unbounded, -unbounded}, high{unbounded, unbounded, unbounded};  ///< around the shape [m]
+  int axis = 2;                                                                         ///< of a cylinder; 2D: 2
+  Vec3 centre;        ///< a point of the cylinder's axis [m]
+  double radius = 0;  ///< of a cylinder [m]
+
+ private:
+  static constexpr double unbounded = std::numeric_limits<double>::infinity();
+};
+
 /// [specimen]
 struct SpecimenSpec {
   enum class Source { lattice, cloud, file };
@@ -64,6 +79,8 @@ struct SpecimenSpec {
   Vec3 box;                               ///< edges of the box [m], instead of the two above; 0: not given
   // file
   std::string path;  ///< packing text, or snapshot (.h5), relative to the scene file
+  // any of them
+  std::optional<TrimSpec> trim;
 
   /// Radii to begin with over those of the grading: below 1 where a stage lets them grow.
   double first_size(int dimension) const {
