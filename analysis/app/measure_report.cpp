@@ -22,26 +22,17 @@ struct Source {
   std::span<const ContactPoint> contacts;
   Homogenised h;
   std::string pressure, joule, volume;  ///< units
-  std::vector<std::pair<std::string, std::array<int, 2>>> places;
 
   Source(const Snapshot& packing, std::span<const ContactPoint> all)
       : scene(packing.scene), state(packing.state), contacts(all), h(homogenise(scene, state)) {
     const bool solid = state.dimension == 3;
     pressure = solid ? "Pa" : "N/m", joule = solid ? "J" : "J/m", volume = solid ? "m3" : "m2";
-    places = {{"x", {0, 0}}, {"y", {1, 1}}};
-    if (solid) places.insert(places.end(), {{"z", {2, 2}}, {"yz", {1, 2}}, {"xz", {0, 2}}});
-    places.push_back({"xy", {0, 1}});
-  }
-  /// The components of the symmetric part.
-  void add_tensor(Rows& rows, const std::string& name, const std::string& unit, const Mat3& m) const {
-    for (const auto& [axes, at] : places)
-      rows.push_back({name + "_" + axes, unit, 0.5 * (m(at[0], at[1]) + m(at[1], at[0]))});
   }
   /// Stress as the history has it: shear positive when it drives a positive shear rate.
   void add_stress(Rows& rows, Mat3 m) const {
     for (int k = 0; k < 3; ++k)
       for (int l = 0; l < 3; ++l) m(k, l) *= k == l ? 1 : -1;
-    add_tensor(rows, "stress", pressure, m);
+    add_tensor(rows, "stress", pressure, m, state.dimension);
   }
   void add_principal(Rows& rows, const std::string& name, const std::string& unit, const Principal& p) const {
     for (std::size_t k = 0; k < static_cast<std::size_t>(state.dimension); ++k)
@@ -97,10 +88,10 @@ MeasureSection coordination_section(const Source& s, const std::vector<std::size
 
 MeasureSection fabric_section(const Source& s) {
   Rows rows;
-  s.add_tensor(rows, "fabric", "-", s.h.fabric);
+  add_tensor(rows, "fabric", "-", s.h.fabric, s.state.dimension);
   s.add_principal(rows, "fabric", "-", s.h.fabric_axes);
   rows.push_back({"fabric_deviator", "-", anisotropy(s.h.fabric_axes, s.state.dimension)});
-  s.add_tensor(rows, "force_fabric", "-", s.h.force_fabric);
+  add_tensor(rows, "force_fabric", "-", s.h.force_fabric, s.state.dimension);
   s.add_principal(rows, "force_fabric", "-", s.h.force_fabric_axes);
   rows.push_back({"force_fabric_deviator", "-", anisotropy(s.h.force_fabric_axes, s.state.dimension)});
   return {"fabric", rows};
@@ -166,7 +157,7 @@ MeasureSection sphere_section(const Source& s, const MeasureSphere& sphere, std:
     Mat3 rate = *m.velocity_gradient;
     for (int k = 0; k < 3; ++k)
       for (int l = 0; l < 3; ++l) rate(k, l) *= k == l ? -1 : 2;
-    s.add_tensor(rows, "strain_rate", "1/s", rate);
+    add_tensor(rows, "strain_rate", "1/s", rate, s.state.dimension);
   }
   return {fmt::format("sphere_{}", number), rows};
 }
@@ -207,6 +198,15 @@ nlohmann::json value_json(const Value& value) {
 }
 
 }  // namespace
+
+void add_tensor(Rows& rows, const std::string& name, const std::string& unit, const Mat3& m, int dimension) {
+  const auto add = [&](const char* axes, int k, int l) {
+    rows.push_back({fmt::format("{}_{}", name, axes), unit, 0.5 * (m(k, l) + m(l, k))});
+  };
+  add("x", 0, 0), add("y", 1, 1);
+  if (dimension == 3) add("z", 2, 2), add("yz", 1, 2), add("xz", 0, 2);
+  add("xy", 0, 1);
+}
 
 MeasureReport measure_report(const Snapshot& packing, const std::string& name, std::span<const ContactPoint> contacts,
                              std::vector<double> splits, std::span<const MeasureSphere> spheres) {

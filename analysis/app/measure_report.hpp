@@ -26,6 +26,10 @@ struct MeasureSection {
   std::vector<Measured> rows;
 };
 
+/// Rows of the components of the symmetric part: name_x … name_xy.
+void add_tensor(std::vector<Measured>& rows, const std::string& name, const std::string& unit, const Mat3&,
+                int dimension);
+
 struct MeasureReport {
   std::string name, title;
   int dimension = 3;

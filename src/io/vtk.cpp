@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 #include "io/text_file.hpp"
@@ -39,14 +41,18 @@ class Appended {
 
 void push(std::vector<double>& all, const Vec3& v) { all.insert(all.end(), {v.x, v.y, v.z}); }
 
-constexpr const char* head =
-    "<?xml version=\"1.0\"?>\n"
-    "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n";
+/// A file of one kind of data: the XML of its piece, and the appended section behind it.
+void write_data(const std::string& path, const std::string& type, const std::string& attributes,
+                const std::string& piece, const Appended& data) {
+  write_file(path, fmt::format("<?xml version=\"1.0\"?>\n<VTKFile type=\"{0}\" version=\"1.0\" "
+                               "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<{0}{1}>\n{2}</Piece>\n</{0}>\n"
+                               "<AppendedData encoding=\"raw\">\n_",
+                               type, attributes, piece) +
+                       data.bytes() + "\n</AppendedData>\n</VTKFile>\n");
+}
 
-/// The XML of a piece, and the appended section behind it.
 void write_piece(const std::string& path, const std::string& piece, const Appended& data) {
-  write_file(path, head + piece + "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_" + data.bytes() +
-                       "\n</AppendedData>\n</VTKFile>\n");
+  write_data(path, "PolyData", "", piece, data);
 }
 
 }  // namespace
@@ -102,6 +108,33 @@ void write_network_vtp(const std::string& path, const State& state, std::span<co
   xml += data.array("Float64", "force", 3, force) + data.array("Int32", "strong", 1, strong);
   xml += data.array("Int32", "sliding", 1, sliding) + data.array("Int32", "chain", 1, chains.link);
   write_piece(path, xml + "</CellData>\n", data);
+}
+
+void write_vti(const std::string& path, const ZoneGrid& grid, const ZoneTable& table) {
+  const std::array n{grid.zones(0), grid.zones(1), grid.zones(2)};
+  std::vector<double> void_ratio, solid;
+  std::vector<std::int64_t> particles;
+  for (std::size_t c = 0; c < n[2]; ++c)
+    for (std::size_t b = 0; b < n[1]; ++b)
+      for (std::size_t a = 0; a < n[0]; ++a) {
+        const ZoneMeasures& zone = table.zones[(a * n[1] + b) * n[2] + c];
+        void_ratio.push_back(zone.solid > 0 ? zone.void_ratio() : std::numeric_limits<double>::quiet_NaN());
+        solid.push_back(zone.solid_fraction());
+        particles.push_back(static_cast<std::int64_t>(zone.grains));
+      }
+  const auto spacing = [&](std::size_t k) {
+    return (grid.edges[k].back() - grid.edges[k].front()) / static_cast<double>(n[k]);
+  };
+  const auto extent = fmt::format("0 {} 0 {} 0 {}", n[0], n[1], n[2]);
+  Appended data;
+  std::string xml = fmt::format("<Piece Extent=\"{}\">\n<CellData Scalars=\"void_ratio\">\n", extent);
+  xml += data.array("Float64", "void_ratio", 1, void_ratio) + data.array("Float64", "solid_fraction", 1, solid);
+  xml += data.array("Int64", "particles", 1, particles) + "</CellData>\n";
+  write_data(path, "ImageData",
+             fmt::format(" WholeExtent=\"{}\" Origin=\"{:.17g} {:.17g} {:.17g}\" Spacing=\"{:.17g} {:.17g} {:.17g}\"",
+                         extent, grid.edges[0].front(), grid.edges[1].front(), grid.edges[2].front(), spacing(0),
+                         spacing(1), spacing(2)),
+             xml, data);
 }
 
 }  // namespace eg

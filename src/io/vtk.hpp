@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "measure/force_chains.hpp"
+#include "measure/zone_grid.hpp"
 #include "state/state.hpp"
 
 namespace eg {
@@ -26,5 +27,9 @@ void write_vtp(const std::string& path, const State&, std::span<const GrainField
 /// the mean), sliding (0 or 1) and chain (number of the force chain, −1: none). Throws RunError when the file cannot be
 /// written.
 void write_network_vtp(const std::string& path, const State&, std::span<const ContactPoint>, const ForceChains&);
+
+/// Writes zones that are the equal cells of a box as a .vti file (VTK XML ImageData) with a void_ratio (NaN in an empty
+/// cell), a solid_fraction and the number of particles a cell. Throws RunError when the file cannot be written.
+void write_vti(const std::string& path, const ZoneGrid&, const ZoneTable&);
 
 }  // namespace eg

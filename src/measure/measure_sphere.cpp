@@ -4,36 +4,11 @@
 #include <cmath>
 
 #include "measure/contact_network.hpp"
+#include "measure/gradient_fit.hpp"
 #include "measure/images.hpp"
 #include "measure/volume.hpp"
 
 namespace eg {
-
-namespace {
-
-/// A grain, or an image of one, with its centre inside.
-struct Inside {
-  Vec3 position, velocity;
-};
-
-/// Σ (v − v̄)⊗(x − x̄) (Σ (x − x̄)⊗(x − x̄))⁻¹.
-std::optional<Mat3> fit_gradient(std::span<const Inside> grains, int dimension) {
-  if (grains.size() <= static_cast<std::size_t>(dimension)) return std::nullopt;
-  Vec3 x_mean, v_mean;
-  for (const auto& g : grains) x_mean += g.position, v_mean += g.velocity;
-  x_mean *= 1 / static_cast<double>(grains.size()), v_mean *= 1 / static_cast<double>(grains.size());
-  Mat3 spread, product;
-  for (const auto& g : grains) {
-    spread += outer(g.position - x_mean, g.position - x_mean);
-    product += outer(g.velocity - v_mean, g.position - x_mean);
-  }
-  if (dimension == 2) spread(2, 2) = (spread(0, 0) + spread(1, 1)) / 2;  // any number of the same size: L·z stays 0
-  const double size = trace(spread) / 3;
-  if (!(determinant(spread) > 1e-12 * size * size * size)) return std::nullopt;
-  return product * inverse(spread);
-}
-
-}  // namespace
 
 double share_inside(const Vec3& a, const Vec3& b, const MeasureSphere& sphere) {
   const Vec3 along = b - a, from = a - sphere.centre;
@@ -50,7 +25,7 @@ SphereMeasures measure_sphere(const State& state, std::span<const ContactPoint> 
   const auto ends = contacts_per_grain(grains.size(), contacts);
   SphereMeasures result;
   result.volume = grain_volume(dimension, sphere.radius);
-  std::vector<Inside> inside;
+  std::vector<Sample> inside;  // velocities of grains, or images of them, with their centre inside
   double solid = 0, touching = 0;
   for (std::size_t i = 0; i < grains.size(); ++i) {
     const Vec3 x = grains.position[i].vec();

@@ -55,7 +55,7 @@ double swept(double radius, double distance, double psi, bool far_side) {
 }
 
 /// What a disk and a ring have in common between two rays ψ = a and b; no edges cross in between.
-double between_rays(double radius, double distance, const Range& ring, double a, double b) {
+double between_rays(double radius, double distance, const Extent& ring, double a, double b) {
   const double turn = 2 * pi * std::round((a + b) / (4 * pi));
   a -= turn, b -= turn;
   const double middle = 0.5 * (a + b), across = distance * std::sin(middle), along = distance * std::cos(middle);
@@ -73,7 +73,7 @@ double between_rays(double radius, double distance, const Range& ring, double a,
 
 }  // namespace
 
-double disk_in_rectangle(double radius, const Range& x, const Range& y) {
+double disk_in_rectangle(double radius, const Extent& x, const Extent& y) {
   if (!(radius > 0) || !(x.low < x.high) || !(y.low < y.high)) return 0;
   const double from = std::max(x.low, -radius), to = std::min(x.high, radius);
   if (!(from < to)) return 0;
@@ -94,12 +94,12 @@ double disk_in_rectangle(double radius, const Range& x, const Range& y) {
   return area;
 }
 
-double disk_in_ring(double radius, double distance, const Range& ring) {
+double disk_in_ring(double radius, double distance, const Extent& ring) {
   if (distance + radius <= ring.high) return disk_beyond(radius, ring.low, distance);
   return lens_volume(2, radius, ring.high, distance) - lens_volume(2, radius, ring.low, distance);
 }
 
-double disk_in_sector(double radius, double distance, double azimuth, const Range& ring, const Range& sector) {
+double disk_in_sector(double radius, double distance, double azimuth, const Extent& ring, const Extent& sector) {
   if (!(radius > 0)) return 0;
   const double from = sector.low - azimuth, to = sector.high - azimuth;
   Breaks<18> breaks(from, to);

@@ -34,8 +34,8 @@ double lens_volume(int dimension, double ri, double rj, double distance) {
   return cap_volume(dimension, ri, ri - hi) + cap_volume(dimension, rj, rj - hj);
 }
 
-Range wall_gap(const State& state, int k) {
-  Range gap;
+Extent wall_gap(const State& state, int k) {
+  Extent gap;
   for (const Wall& wall : state.walls) {
     if (wall.shape != Wall::plane) continue;
     if (wall.normal[k] == 1) gap.low = std::max(gap.low, wall.point[k]);

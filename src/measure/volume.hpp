@@ -2,7 +2,7 @@
 // Volumes of grains, of their overlaps and of the voids between them [m³]; 2D: areas [m²].
 #include <span>
 
-#include "measure/range.hpp"
+#include "measure/extent.hpp"
 #include "state/gather.hpp"
 
 namespace eg {
@@ -16,7 +16,7 @@ double lens_volume(int dimension, double ri, double rj, double distance);
 double cap_volume(int dimension, double radius, double height);
 
 /// What walls across axis k leave free [m], the innermost ones where they have moved to; infinite where there is none.
-Range wall_gap(const State&, int k);
+Extent wall_gap(const State&, int k);
 
 /// Volume of the specimen: of the cell; between parallel walls across x, y or z, the innermost ones count, wherever
 /// they have moved.

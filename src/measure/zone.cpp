@@ -15,13 +15,13 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-Range shifted(const Range& r, double by) { return {r.low - by, r.high - by}; }
-bool covers(const Range& r, double radius) { return r.low <= -radius && r.high >= radius; }
-bool misses(const Range& r, double radius) { return r.low >= radius || r.high <= -radius || r.low >= r.high; }
-bool full_turn(const Range& angle) { return angle.length() >= 2 * pi * (1 - 1e-15); }
+Extent shifted(const Extent& r, double by) { return {r.low - by, r.high - by}; }
+bool covers(const Extent& r, double radius) { return r.low <= -radius && r.high >= radius; }
+bool misses(const Extent& r, double radius) { return r.low >= radius || r.high <= -radius || r.low >= r.high; }
+bool full_turn(const Extent& angle) { return angle.length() >= 2 * pi * (1 - 1e-15); }
 
 /// Part of a sphere (2D: disk) around the origin between two planes.
-double slab(int dimension, double radius, const Range& range) {
+double slab(int dimension, double radius, const Extent& range) {
   const double a = std::max(range.low, -radius), b = std::min(range.high, radius);
   if (!(a < b)) return 0;
   const auto cap = [&](double height) { return cap_volume(dimension, radius, height); };
@@ -33,7 +33,8 @@ double slab(int dimension, double radius, const Range& range) {
 /// ∫ section(s) dz over a sphere around the origin, s(z) the radius of its cross-section; `touches`: values of s at
 /// which the section's edges touch, where it is not smooth.
 template <class Section>
-double integrate_sections(double radius, const Range& height, std::span<const double> touches, const Section& section) {
+double integrate_sections(double radius, const Extent& height, std::span<const double> touches,
+                          const Section& section) {
   const double from = std::max(height.low, -radius), to = std::min(height.high, radius);
   if (!(from < to)) return 0;
   std::vector<double> breaks{from, to};
@@ -60,7 +61,7 @@ double distance_from_ray(double distance, double azimuth, double angle) {
   return std::cos(psi) > 0 ? distance * std::abs(std::sin(psi)) : distance;
 }
 
-bool in_sector(double azimuth, const Range& sector) {
+bool in_sector(double azimuth, const Extent& sector) {
   const double from_low = azimuth - sector.low;
   return from_low - 2 * pi * std::floor(from_low / (2 * pi)) < sector.length();
 }
@@ -127,8 +128,8 @@ bool holds(const CylinderZone& zone, int dimension, const Vec3& p) {
 }
 
 double volume_inside(const BoxZone& zone, int dimension, const Vec3& centre, double radius) {
-  const Range x = shifted(zone.x, centre.x), y = shifted(zone.y, centre.y);
-  const Range z = dimension == 3 ? shifted(zone.z, centre.z) : Range{};
+  const Extent x = shifted(zone.x, centre.x), y = shifted(zone.y, centre.y);
+  const Extent z = dimension == 3 ? shifted(zone.z, centre.z) : Extent{};
   if (misses(x, radius) || misses(y, radius) || misses(z, radius)) return 0;
   const bool all_x = covers(x, radius), all_y = covers(y, radius), all_z = covers(z, radius);
   if (all_x && all_y) return slab(dimension, radius, z);
@@ -144,7 +145,7 @@ double volume_inside(const BoxZone& zone, int dimension, const Vec3& centre, dou
 }
 
 double volume_inside(const CylinderZone& zone, int dimension, const Vec3& centre, double radius) {
-  const Range height = dimension == 3 ? shifted(zone.height, centre.z) : Range{};
+  const Extent height = dimension == 3 ? shifted(zone.height, centre.z) : Extent{};
   const Polar at(centre);
   if (misses(height, radius) || zone.radius.length() <= 0 || zone.angle.length() <= 0) return 0;
   const Place place = place_of(zone, at, radius);

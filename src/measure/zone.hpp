@@ -10,14 +10,14 @@ namespace eg {
 
 /// Slabs and boxes: what is not given reaches to infinity [m].
 struct BoxZone {
-  Range x, y, z;
+  Extent x, y, z;
 };
 
 /// A part of a cylinder around the z axis.
 struct CylinderZone {
-  Range height;                          ///< z [m]
-  Range radius{0, Range{}.high};         ///< distance from the axis [m], low ≥ 0
-  Range angle{0, 2 * std::numbers::pi};  ///< from x towards y [rad], at most a full turn
+  Extent height;                          ///< z [m]
+  Extent radius{0, Extent{}.high};        ///< distance from the axis [m], low ≥ 0
+  Extent angle{0, 2 * std::numbers::pi};  ///< from x towards y [rad], at most a full turn
 };
 
 double volume_of(const BoxZone&, int dimension);

@@ -43,12 +43,12 @@ std::array<Places, 3> places_of(const ZoneGrid& grid, int dimension, const Vec3&
   return {met(e[0], distance - radius, distance + radius), Places{0, e[1].size() - 1}, along_z};
 }
 
-Range between(const std::vector<double>& edges, std::size_t place) { return {edges[place], edges[place + 1]}; }
+Extent between(const std::vector<double>& edges, std::size_t place) { return {edges[place], edges[place + 1]}; }
 
 /// One zone of the grid in its own frame, and what it holds.
 struct Cell3 {
   ZoneGrid::Shape shape;
-  std::array<Range, 3> bounds;
+  std::array<Extent, 3> bounds;
 
   template <class F>
   auto visit(const F& f) const {
@@ -107,46 +107,66 @@ Ball ball_around(const ZoneGrid& grid, int dimension) {
   return ball;
 }
 
+/// Radii between cylinder walls along the axis of the grid, whose centre goes to the mean of theirs (a stack of rings
+/// has many); without walls from the axis to the outermost grain.
+Extent cylinder_walls(const State& state, ZoneGrid& grid) {
+  Extent radius{0, 0};
+  Vec3 centre;
+  double rings = 0;
+  for (const Wall& wall : state.walls) {
+    if (wall.shape != Wall::cylinder || std::abs(wall.normal[grid.axis]) != 1) continue;
+    if (wall.hollow)
+      radius.high = std::max(radius.high, wall.radius), centre += wall.point, ++rings;
+    else
+      radius.low = std::max(radius.low, wall.radius);
+  }
+  if (rings > 0) {
+    grid.centre = (1 / rings) * centre;
+    return radius;
+  }
+  for (std::size_t i = 0; i < state.grains.size(); ++i) {
+    const Vec3 p = local(grid, state.grains.position[i].vec());
+    radius.high = std::max(radius.high, std::hypot(p.x, p.y) + state.grains.radius(i));
+  }
+  return radius;
+}
+
 }  // namespace
 
-std::array<Range, 3> specimen_ranges(const State& state) {
-  std::array<Range, 3> ranges;
+std::array<Extent, 3> specimen_extents(const State& state) {
+  std::array<Extent, 3> extents;
   for (int k = 0; k < 3; ++k) {
     const auto axis = static_cast<std::size_t>(k);
     if (k >= state.dimension) {
-      ranges[axis] = {0, 1};
+      extents[axis] = {0, 1};
       continue;
     }
-    Range filled{INFINITY, -INFINITY};
+    Extent filled{INFINITY, -INFINITY};
     for (std::size_t i = 0; i < state.grains.size(); ++i) {
       const double x = state.grains.position[i].vec()[k], r = state.grains.radius(i);
       filled.low = std::min(filled.low, x - r), filled.high = std::max(filled.high, x + r);
     }
-    const Range gap = wall_gap(state, k);
+    const Extent gap = wall_gap(state, k);
     const double origin = state.cell.origin[k];
     if (state.cell.periodic[axis])
-      ranges[axis] = {origin, origin + state.cell.h(k, k)};
+      extents[axis] = {origin, origin + state.cell.h(k, k)};
     else
-      ranges[axis] = {std::isfinite(gap.low) ? gap.low : filled.low, std::isfinite(gap.high) ? gap.high : filled.high};
+      extents[axis] = {std::isfinite(gap.low) ? gap.low : filled.low, std::isfinite(gap.high) ? gap.high : filled.high};
   }
-  return ranges;
+  return extents;
 }
 
 ZoneGrid whole_specimen(const State& state, ZoneGrid::Shape shape, int axis) {
-  const auto ranges = specimen_ranges(state);
+  const auto extents = specimen_extents(state);
   ZoneGrid grid{.shape = shape, .axis = axis};
   for (std::size_t k = 0; k < 3; ++k) {
-    grid.edges[k] = {ranges[k].low, ranges[k].high};
-    grid.centre[static_cast<int>(k)] = 0.5 * (ranges[k].low + ranges[k].high);
+    grid.edges[k] = {extents[k].low, extents[k].high};
+    grid.centre[static_cast<int>(k)] = 0.5 * (extents[k].low + extents[k].high);
   }
   if (shape == ZoneGrid::Shape::box) return grid;
-  double radius = 0;
-  for (std::size_t i = 0; i < state.grains.size(); ++i) {
-    const Vec3 p = local(grid, state.grains.position[i].vec());
-    radius = std::max(radius, std::hypot(p.x, p.y) + state.grains.radius(i));
-  }
-  const Range height = ranges[static_cast<std::size_t>(axis)];
-  grid.edges = {std::vector{0., radius}, {0., 2 * pi}, {height.low, height.high}};
+  const Extent height = extents[static_cast<std::size_t>(axis)];
+  const Extent radius = cylinder_walls(state, grid);
+  grid.edges = {std::vector{radius.low, radius.high}, {0., 2 * pi}, {height.low, height.high}};
   return grid;
 }
 

@@ -22,17 +22,17 @@ struct ZoneGrid {
 };
 
 /// What the walls and the cell leave to the grains, or where there are none, what the grains fill: {x, y, z} [m].
-std::array<Range, 3> specimen_ranges(const State&);
+std::array<Extent, 3> specimen_extents(const State&);
 
-/// The box or upright cylinder that holds the specimen, as one zone. A cylinder stands in the middle of
-/// specimen_ranges() and reaches to the outermost grain.
+/// The box or cylinder that holds the specimen, as one zone. A cylinder is that of the walls along its axis; without
+/// such it stands in the middle of specimen_extents() and reaches to the outermost grain.
 ZoneGrid whole_specimen(const State&, ZoneGrid::Shape, int axis);
 
 struct ZoneMeasures {
-  std::array<Range, 3> bounds{};  ///< coordinates of the grid; z of 2D means nothing
-  double volume = 0;              ///< [m³] (2D: m²)
-  double solid = 0;               ///< of the parts of grains inside; what overlaps counts twice
-  std::size_t grains = 0;         ///< with their centre inside
+  std::array<Extent, 3> bounds{};  ///< coordinates of the grid; z of 2D means nothing
+  double volume = 0;               ///< [m³] (2D: m²)
+  double solid = 0;                ///< of the parts of grains inside; what overlaps counts twice
+  std::size_t grains = 0;          ///< with their centre inside
 
   double solid_fraction() const { return solid / volume; }
   double void_ratio() const { return (volume - solid) / solid; }  ///< infinite in an empty zone

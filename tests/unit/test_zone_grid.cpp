@@ -107,13 +107,28 @@ TEST(ZoneGrid, WallsAndCellsMakeTheContainer) {
   test::add_plane(state, {0, 0, 2}, {0, 0, -1});
   state.cell.periodic = {true, false, false};
   state.cell.origin.x = -0.25, state.cell.h(0, 0) = 1.5;
-  const auto ranges = specimen_ranges(state);
-  EXPECT_EQ(ranges[0].low, -0.25);
-  EXPECT_EQ(ranges[0].high, 1.25);
-  EXPECT_EQ(ranges[2].low, -0.5);
-  EXPECT_EQ(ranges[2].high, 2);
-  EXPECT_GT(ranges[1].length(), 0.9);
-  EXPECT_LT(ranges[1].length(), 1.2);
+  const auto extents = specimen_extents(state);
+  EXPECT_EQ(extents[0].low, -0.25);
+  EXPECT_EQ(extents[0].high, 1.25);
+  EXPECT_EQ(extents[2].low, -0.5);
+  EXPECT_EQ(extents[2].high, 2);
+  EXPECT_GT(extents[1].length(), 0.9);
+  EXPECT_LT(extents[1].length(), 1.2);
+}
+
+TEST(ZoneGrid, RingsMakeACylinder) {
+  State state = scattered(3);
+  const auto ring = [](double x, double radius, bool hollow) {
+    Wall wall;
+    wall.shape = Wall::cylinder, wall.point = {x, 0.5, 0}, wall.normal = {0, 0, 1};
+    wall.radius = radius, wall.hollow = hollow;
+    return wall;
+  };
+  state.walls = {ring(0.4, 0.7, true), ring(0.6, 0.7, true), ring(0.5, 0.1, false)};
+  const ZoneGrid grid = whole_specimen(state, Shape::cylinder, 2);
+  EXPECT_EQ(grid.edges[0], (std::vector{0.1, 0.7}));
+  EXPECT_NEAR(grid.centre.x, 0.5, 1e-15);
+  EXPECT_NE(whole_specimen(state, Shape::cylinder, 0).edges[0], grid.edges[0]);  // no walls along x
 }
 
 TEST(ZoneGrid, VarianceIsThatOfTheVoidRatios) {

@@ -4,7 +4,7 @@
 namespace eg {
 
 /// low ≤ value < high; what is not given reaches to infinity.
-struct Range {
+struct Extent {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
 
