@@ -97,11 +97,10 @@ class Carving {
   }
 
   bool passes(const std::array<Index, 3>& p, double probe) const {
-    const auto radius = [&](std::size_t k) {
-      return points_.planes[p[k]] == 0 ? state_.grains.radius(points_.grain[p[k]]) : 0.0;
-    };
+    const auto radius = [&](std::size_t k) { return state_.grains.radius(points_.grain[p[k]]); };
+    const auto own = [&](std::size_t k) { return points_.planes[p[k]] == 0 ? radius(k) : 0.0; };
     const auto at = [&](std::size_t k) { return points_.at[p[k]]; };
-    if (dimension_ == 2) return 0.5 * (norm(at(1) - at(0)) - radius(0) - radius(1)) > probe;
+    if (dimension_ == 2) return 0.5 * (norm(at(1) - at(0)) - own(0) - own(1)) > probe;
     const Vec3 a = at(1) - at(0), b = at(2) - at(0);
     const double circle = norm(a) * norm(b) * norm(a - b) / (2 * norm(cross(a, b)));
     return circle - (radius(0) + radius(1) + radius(2)) / 3 > probe;

@@ -24,9 +24,9 @@ struct OuterSurface {
 
 /// Of the Delaunay cells of all centres, and of the feet of grains near planes (gap below the mean radius; planes
 /// without a window), those are taken away from outside that the probe reaches: it passes a facet when the circle
-/// through the corners is larger than the mean radius of their grains (0 for a foot) by more than `probe` [m] (2D: half
-/// the gap of the two), and no facet on a plane. What is left is the specimen (alpha shape, Edelsbrunner and Mücke
-/// 1994, but for holes that cannot be reached); of several pieces the largest one. It is closed: Σ outward = 0.
+/// through the corners is larger than the mean radius of their grains by more than `probe` [m] (2D: half the gap of the
+/// two, a foot being a point), and no facet on a plane. What is left is the specimen (alpha shape, Edelsbrunner and
+/// Mücke 1994, but for holes that cannot be reached); of several pieces the largest one. It is closed: Σ outward = 0.
 OuterSurface outer_surface(const State& state, double probe);
 
 }  // namespace eg

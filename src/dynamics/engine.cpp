@@ -111,6 +111,13 @@ void Engine::forces(double dt, TallyLevel tally, const AfterChunk& after) {
   e.boundary += 0.5 * (power_before + body_power(state_)) * dt + 0.5 * applied_work(state_, dt);
 }
 
+void Engine::change_membrane() {
+  if (state_.membrane.stress == membrane_stress(scene_, state_)) return;
+  const double before = applied_work(state_, state_.dt);
+  lay_membrane(scene_, state_);
+  if (scene_.energy) state_.ledger.boundary += 0.5 * (before - applied_work(state_, state_.dt));  // as drift() counts
+}
+
 void Engine::add_applied() {
   for (const auto& f : state_.applied) {
     Quad& row = work_.rows[work_.stride * f.grain];
@@ -159,7 +166,6 @@ void Engine::drift() {
     }
     upkeep_ += omp_get_wtime() - begin;
   }
-  if (state_.membrane.stress != membrane_stress(scene_, state_)) lay_membrane(scene_, state_);
   last_dt_ = dt;
   state_.time += dt;
   ++state_.step;

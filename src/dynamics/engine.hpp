@@ -30,6 +30,8 @@ class Engine {
     drift();
     respond(dt, tally);
   }
+  /// A stage has begun: the membrane is laid anew if its pressure is another.
+  void change_membrane();
   /// What may move has changed (grains were glued): scratch that depends on it is made anew.
   void renew() { refresh_workspace(), weigh_anew_ = true; }
   /// Velocities alone, by forces() at hand: the half kick at the start.

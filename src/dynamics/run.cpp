@@ -129,6 +129,7 @@ bool run_stages(const Scene& scene, State& state, StepPolicy& policy, const RunO
   if (begins) begin_stage(scene, state);
   Engine engine(scene, state, scalar);
   if (begins) glue(scene, state, engine);
+  engine.change_membrane();
   apply_stage(scene, state, engine);
   if (begins) make_bonds(scene, state, engine);
   policy.begin(state);
@@ -168,7 +169,8 @@ bool run_stages(const Scene& scene, State& state, StepPolicy& policy, const RunO
     if (ends) {
       if (observer.stage_end) observer.stage_end(state, stage);
       if (++state.stage < scene.stages.size()) {
-        begin_stage(scene, state), apply_stage(scene, state, engine), make_bonds(scene, state, engine);
+        begin_stage(scene, state), engine.change_membrane(), apply_stage(scene, state, engine),
+            make_bonds(scene, state, engine);
         control.emplace(scene.stages[state.stage], state, scene.materials.front().density);
         control->set_rate(state, taken);  // the cell is not to drift on at the rates of the stage before
         glue(scene, state, engine);

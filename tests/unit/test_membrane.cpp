@@ -224,8 +224,8 @@ std::string refusal(const std::string& rest) {
 
 TEST(Membrane, StagesAreHeldTogether) {
   const std::string stage = "[[stage]]\nname = \"a\"\nuntil = { steps = 1 }\n",
-                    second = "[[stage]]\nname = \"b\"\nuntil = { steps = 1 }\n",
-                    load = "membrane = { stress = 1 }\n", skin = "[boundary.membrane]\n";
+                    second = "[[stage]]\nname = \"b\"\nuntil = { steps = 1 }\n", load = "membrane = { stress = 1 }\n",
+                    skin = "[boundary.membrane]\n";
   EXPECT_EQ(refusal(skin + stage + load + second + load), "");
   EXPECT_NE(refusal(stage + load).find("needs a membrane"), std::string::npos);
   EXPECT_NE(refusal(skin + stage + load + second).find("is missing, though stage \"a\""), std::string::npos);
