@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 
 #include "app/commands.hpp"
@@ -52,6 +53,8 @@ std::optional<Since> compared(const MeasureFlags& flags, const State& state, std
   Since since = compare(f, state);
   add_since(report, since, f, state, spheres);
   if (!f.fields.empty()) {
+    if (const auto folder = std::filesystem::path(f.fields).parent_path(); !folder.empty())
+      std::filesystem::create_directories(folder);
     write_vtp(f.fields, state, since_fields(since, state.grains.size()));
     fmt::print(stderr, "displacements and strains: {}\n", f.fields);
   }

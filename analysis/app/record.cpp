@@ -114,14 +114,14 @@ void add_stack_columns(Columns& c, const Scene& scene, const std::string& group)
       if (scene.boundary.bodies[b].group == group) visit(state.bodies[b]);
   };
   c.push_back({{group + "_resultant_share", "-"}, [over](const RowSource& r) {
-                 double sum = 0, count = 0;
+                 double resultants = 0, forces = 0;
                  over(r.state, [&](const Body& b) {
                    Vec3 free = b.force;
                    for (int k = 0; k < 3; ++k)
                      if (!b.free[static_cast<std::size_t>(k)]) free[k] = 0;
-                   if (b.magnitude > 0) sum += norm(free) / b.magnitude, count += 1;
+                   resultants += norm(free), forces += b.magnitude;
                  });
-                 return count > 0 ? sum / count : 0.0;
+                 return forces > 0 ? resultants / forces : 0.0;
                }});
   c.push_back({{group + "_largest_displacement", "m"}, [over](const RowSource& r) {
                  double most = 0;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double gain = 0.5;            // α; the proof needs α ≤ 2/3, the rest is room for K to grow within a step
 constexpr double patience = 400;        // steps in which the part that builds up takes over a lasting speed
-constexpr double near_target = 0.05;    // it does so only near the target, or the servo would overshoot
+constexpr double near_target = 0.05;    // it sets in there, or the servo would overshoot
 constexpr double slow_enough = 2.5e-3;  // inertial number below which straining is quasi-static
 
 using Servo = BodyDrive::Servo;
@@ -138,7 +138,8 @@ void BodyControl::drive(State& state, double dt) const {
     const double target = target_force(scene_, state, d), excess = body_load(scene_, state, d).force - target;
     const bool touched = body.stiffness > 0;
     const double at_once = touched ? gain * excess / (body.stiffness * dt) : excess < 0 ? -d.max_speed : 0.0;
-    body.follow = touched && std::abs(excess) < near_target * target ? body.follow + at_once / patience : 0.0;
+    const bool met = body.follow != 0 || std::abs(excess) < near_target * target;  // since the stage began
+    body.follow = touched && met ? std::clamp(body.follow + at_once / patience, -d.max_speed, d.max_speed) : 0.0;
     const double speed = std::clamp(at_once + body.follow, -d.max_speed, d.max_speed);  // outward
     if (d.radial)
       body.opening = wall_of(state, d.body, Wall::cylinder)->hollow ? speed : -speed;

@@ -99,7 +99,7 @@ const std::vector<SceneCase> scene_cases{
     {7, "[contct]", "s.toml:7: contct is not a known key; did you mean \"contact\"?"},
     {11, "count = 100\ncells = [1, 1, 1]",
      "s.toml:12: specimen.cells is not a known key; known here: aspect, box, coarse_count, count, "
-     "expand_to, grading, scale, solid_fraction, source"},
+     "expand_to, grading, scale, solid_fraction, source, trim"},
     {20, "until = { stress_eror = 1e-3 }",
      "s.toml:20: stage[1].until.stress_eror is not a known key; did you mean \"stress_error\"?"},
     {20, "", "s.toml:17: stage[1].until is missing; add \"until\" to [stage[1]]"},

@@ -65,7 +65,7 @@ TEST(Trim, TheAxisMayLieAlongAnyAxis) {
   EXPECT_EQ(size("y"), size("z"));
   const State lying = state_with("{ cylinder = { axis = \"x\", centre = [16, 17], radius = 9.1, from = 5, to = 25 } }");
   EXPECT_EQ(lying.cell.h(0, 0), 20);
-  EXPECT_EQ(lying.cell.h(1, 1), 18.2);
+  EXPECT_DOUBLE_EQ(lying.cell.h(1, 1), 18.2);
 }
 
 TEST(Trim, ABoxFitsIntoItsWalls) {

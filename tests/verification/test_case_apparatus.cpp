@@ -24,7 +24,10 @@ TEST(DirectShear, ReducedBoxReachesItsStrength) {
 }
 
 TEST(PlaneStrain, ReducedCalibrationPeaksAndDilates) {
-  const CaseRun run("plane_strain_calibration", "--set specimen.count=1200 --set stage[3].until.displacement=1.2e-3");
+  const CaseRun run("plane_strain_calibration",  // so few grains between walls lie loosely: without friction in
+                                                 // preparation their porosity is .40
+                    "--set specimen.count=1200 --set stage[1].friction=0 --set stage[2].friction=0 "
+                    "--set stage[3].until.displacement=1.2e-3");
   ASSERT_TRUE(run.complete());
   const auto axial = run.column("z_high_stress"), lateral = run.column("y_high_stress"), e = run.column("void_ratio"),
              stage = run.column("stage");
@@ -34,6 +37,21 @@ TEST(PlaneStrain, ReducedCalibrationPeaksAndDilates) {
   EXPECT_NEAR(most, 1150e3, 0.15 * 1150e3);
   EXPECT_NEAR(lateral.back(), 275e3, 0.01 * 275e3);
   EXPECT_GT(e.back(), densest + 5e-3);
+}
+
+TEST(SimpleShear, ReducedRingsAreInBalanceWhileGrainsSlide) {
+  const CaseRun run("simple_shear_rings",
+                    "--set specimen.scale=2 --set specimen.count=1200 --set stage[3].until.displacement=8e-4");
+  ASSERT_TRUE(run.complete());
+  const auto balance = run.column("ring_resultant_share"), sliding = run.column("sliding_fraction"),
+             shear = run.column("cap_force_x"), moved = run.column("cap_moved_x"), stage = run.column("stage");
+  double share = 0, rows = 0;
+  for (std::size_t k = 0; k < stage.size(); ++k)
+    if (stage[k] == 3 && moved[k] > 2e-4) share += balance[k], rows += 1;  // once they have begun to move
+  EXPECT_LT(share / rows, 1e-2);
+  EXPECT_GT(sliding.back(), 0.3);
+  EXPECT_LT(shear.back(), 0);  // the grains hold the cap back
+  EXPECT_NEAR(run.column("cap_stress").back(), 50e3, 0.05 * 50e3);
 }
 
 }  // namespace
