@@ -66,8 +66,7 @@ class Recorder {
   void row(const State& state) {
     const Homogenised h = homogenise(scene_, state);
     history_.append(state.step, history_row(scene_, state, h));
-    for (const auto& line : broken_assumptions(scene_, state, h))
-      warn(state, line.substr(0, line.find(' ')), line);
+    for (const auto& line : broken_assumptions(scene_, state, h)) warn(state, line.substr(0, line.find(' ')), line);
   }
   /// A line a kind of trouble, the first one seen.
   void warn(const State& state, const std::string& kind, const std::string& line) {

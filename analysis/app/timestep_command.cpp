@@ -82,8 +82,9 @@ void add_timestep_command(CLI::App& app, Action& action) {
   add_packing_options(*sub, f->packing);
   sub->add_flag("--verify", f->verify, "bracket the limit by stepping a small perturbation, contacts held");
   sub->add_option("--figure", f->figure, "draw the rules of thumb against the limit (.svg, .png or .pdf)");
-  sub->add_option("--linearisation", f->linearisation,
-                  "elastic: every contact sticks; consistent: the exact tangent of the forces beside it, sliding included")
+  sub->add_option(
+         "--linearisation", f->linearisation,
+         "elastic: every contact sticks; consistent: the exact tangent of the forces beside it, sliding included")
       ->check(CLI::IsMember({"elastic", "consistent"}));
   sub->add_option("--solver", f->solver, "own, or slepc: a snapshot shared among the processes of mpirun")
       ->check(CLI::IsMember({"own", "slepc"}));

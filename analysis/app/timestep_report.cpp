@@ -89,15 +89,16 @@ std::string text_of(const TimestepReport& r) {
     const auto& c = *r.consistent;
     const auto& g = c.spectrum;
     const char* how_many = c.complete ? "" : " found at the ends of the spectrum";
-    line("consistent tangent", fmt::format("{} of {} contacts slide; asymmetry {:.2e}", c.sliding, c.contacts, c.asymmetry));
+    line("consistent tangent",
+         fmt::format("{} of {} contacts slide; asymmetry {:.2e}", c.sliding, c.contacts, c.asymmetry));
     line("  spectral radius", fmt::format("{:.6g} 1/s² (proved: at most {:.6g}), 2/√ of it {:.6g} … {:.6g} s", g.radius,
                                           c.radius_upper, 2 / std::sqrt(c.radius_upper), 2 / std::sqrt(g.radius)));
     line("  complex pairs", g.flutter == 0 ? fmt::format("none{}", how_many)
                                            : fmt::format("{}{}; the fastest grows at {:.3g} 1/s, {:.4g} Hz (flutter)",
                                                          g.flutter, how_many, g.flutter_rate, g.flutter_frequency));
     line("  negative real", g.collapse == 0 ? fmt::format("none{}", how_many)
-                                            : fmt::format("{}{}; the fastest grows at {:.3g} 1/s (collapse)", g.collapse,
-                                                          how_many, g.collapse_rate));
+                                            : fmt::format("{}{}; the fastest grows at {:.3g} 1/s (collapse)",
+                                                          g.collapse, how_many, g.collapse_rate));
   };
   const auto damped_lines = [&] {
     if (!r.damped || !std::isfinite(r.damped->dt_safe)) return;

@@ -140,8 +140,7 @@ std::string text_of(const DispersionReport& r) {
   const auto line = [&](const char* key, const std::string& value) { out += fmt::format("  {:<24}{}\n", key, value); };
   line("particles",
        fmt::format("{}, {} of the unit cell {}", r.particles, r.unit.copies, r.unit.copies == 1 ? "copy" : "copies"));
-  line("unit cell",
-       fmt::format("{} grains, {} contacts, {} branches", net.size(), net.contacts(), total_dofs(net)));
+  line("unit cell", fmt::format("{} grains, {} contacts, {} branches", net.size(), net.contacts(), total_dofs(net)));
   out += fmt::format("\nat the points of the path{}:\n{}", total_dofs(net) > 12 ? " (twelve slowest branches)" : "",
                      corner_table(r).text());
   if (!r.slopes.empty()) out += fmt::format("\nlong waves:\n{}", slope_table(r).text());

@@ -5,7 +5,8 @@
 
 namespace eg {
 
-/// Reads one stage. Of the scene dimension, contact, specimen, boundary and record are looked at: they must be read before.
+/// Reads one stage. Of the scene dimension, contact, specimen, boundary and record are looked at: they must be read
+/// before.
 StageSpec read_stage(const TomlReader&, const Scene&);
 
 }  // namespace eg

@@ -11,7 +11,8 @@ namespace eg {
 /// [Pa] (2D: N/m). In equilibrium without body forces its columns are the tractions on the faces of V.
 Mat3 stress(std::span<const ContactPoint>, double volume);
 
-/// Force of contacts, gravity and what is applied from outside on every grain [N], contacts' dashpots left out; zero for fixed grains.
+/// Force of contacts, gravity and what is applied from outside on every grain [N], contacts' dashpots left out; zero
+/// for fixed grains.
 std::vector<Vec3> net_forces(const State&, std::span<const ContactPoint>, const Vec3& gravity);
 
 /// Mean |net force| of the grains that can move over mean |contact force| [-]; 1 without contacts.

@@ -5,8 +5,8 @@
 
 #include "search/grid.hpp"
 #include "search/spatial_sort.hpp"
-#include "state/friction.hpp"
 #include "search/wall_contacts.hpp"
+#include "state/friction.hpp"
 
 namespace eg {
 namespace {

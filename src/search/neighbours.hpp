@@ -13,9 +13,9 @@ void rebuild_neighbours(State& state, double skin, double contact_skin);
 /// Remakes contacts from the neighbour list: every pair with gap < contact_skin; history of pairs that stay is kept.
 void refresh_contacts(State& state);
 
-/// The part of the skin used up since the last refresh [m], growth of radii included, given the largest peculiar displacement of a grain since
-/// then: twice that, plus the cell's strain over the longest reach, plus the motion of walls. No pair has come nearer
-/// by more.
+/// The part of the skin used up since the last refresh [m], growth of radii included, given the largest peculiar
+/// displacement of a grain since then: twice that, plus the cell's strain over the longest reach, plus the motion of
+/// walls. No pair has come nearer by more.
 double used_skin(const State& state, double displacement);
 
 /// Brings the lists up to date if some pair that State::contacts lacks might touch. Returns whether contacts changed.

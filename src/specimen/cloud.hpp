@@ -13,7 +13,7 @@ struct CloudSpec {
   double solid_fraction = 0.3;            ///< volume of grains over volume of the box [-]
   std::array<double, 3> aspect{1, 1, 1};  ///< edges of the box relative to each other; aspect[2] is not read in 2D
   bool periodic = true;                   ///< false: grains lie wholly inside the box
-  Vec3 box;                               ///< edges of the box [m], instead of fraction and aspect where they are > 0
+  Vec3 box{};                             ///< edges of the box [m], instead of fraction and aspect where they are > 0
 };
 
 /// Grain i has radii[i] [m]. Random sequential insertion, the largest grains first; when the box is too full for that

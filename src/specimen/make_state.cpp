@@ -11,8 +11,8 @@
 #include "contact/laws.hpp"
 #include "specimen/lattice.hpp"
 #include "specimen/make_walls.hpp"
-#include "state/friction.hpp"
 #include "specimen/trim.hpp"
+#include "state/friction.hpp"
 
 namespace eg {
 

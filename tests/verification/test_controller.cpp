@@ -7,8 +7,8 @@
 #include "assembly/linearise.hpp"
 #include "dynamics/run.hpp"
 #include "io/scene_file.hpp"
-#include "support/scenes.hpp"
 #include "state/damping.hpp"
+#include "support/scenes.hpp"
 #include "timestep/controller.hpp"
 #include "timestep/damped_interval.hpp"
 
