@@ -90,8 +90,10 @@ void Engine::forces(double dt, TallyLevel tally, const AfterChunk& after) {
   Tally now;
   if (!state_.walls.empty()) now = loop_->walls(state_, work_, dt, options_);
   add_applied();
-  const Tally grains = loop_->contacts(state_, work_, dt, options_, state_.glued.empty() ? after : AfterChunk{});
-  if (!state_.glued.empty()) {
+  const bool weighs = !state_.glued.empty();  // what glued grains feel is read before the kick uses it up
+  const AfterChunk later;
+  const Tally grains = loop_->contacts(state_, work_, dt, options_, weighs ? later : after);
+  if (weighs) {
     weigh_glued();
     if (after)
       for (std::size_t k = 0; k < work_.schedule.chunks(); ++k) after(k);

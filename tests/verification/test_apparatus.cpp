@@ -13,6 +13,7 @@
 #include "boundary/body_control.hpp"
 #include "dynamics/run.hpp"
 #include "io/scene_file.hpp"
+#include "support/scene_text.hpp"
 #include "support/scenes.hpp"
 #include "timestep/controller.hpp"
 #include "timestep/interval.hpp"
@@ -21,24 +22,7 @@ using namespace eg;
 
 namespace {
 
-const std::string grains = R"(
-dimension = 3
-seed = 2
-[material.grain]
-normal_stiffness = 1e6
-shear_stiffness = 7e5
-density = 2650
-friction = 0.3
-[contact]
-law = "linear"
-[record]
-energy = true
-[specimen]
-source = "cloud"
-count = 150
-grading = { min_radius = 0.8e-3, max_radius = 1.2e-3 }
-solid_fraction = 0.5
-)";
+const std::string grains = test::soft_grains(150);
 
 const std::string smooth =
     "[material.smooth]\nnormal_stiffness = 1e6\nshear_stiffness = 7e5\ndensity = 2650\nfriction = 0\n";

@@ -11,6 +11,7 @@
 #include "dynamics/run.hpp"
 #include "io/scene_file.hpp"
 #include "io/snapshot.hpp"
+#include "support/scene_text.hpp"
 #include "support/scenes.hpp"
 #include "timestep/controller.hpp"
 #include "timestep/interval.hpp"
@@ -23,23 +24,7 @@ namespace {
 constexpr double pressure = 100e3;
 
 /// Grains pressed together in a mould, which then gives way to a membrane.
-const std::string cylinder = R"(
-dimension = 3
-seed = 2
-[material.grain]
-normal_stiffness = 1e6
-shear_stiffness = 7e5
-density = 2650
-friction = 0.3
-[contact]
-law = "linear"
-[record]
-energy = true
-[specimen]
-source = "cloud"
-count = 600
-grading = { min_radius = 0.8e-3, max_radius = 1.2e-3 }
-solid_fraction = 0.5
+const std::string cylinder = test::soft_grains(600) + R"(
 [boundary]
 type = "free"
 [[boundary.wall]]
