@@ -128,8 +128,10 @@ std::string fits_text(const StiffnessReport& r) {
                          t.c44, t.c66));
   }
   line("stiffest direction",
-       fmt::format("{}; the fabric's {}, {:.1f}° apart", direction_text(r.principal.axes[0], r.dimension),
-                   direction_text(r.fabric.axes[0], r.dimension), r.fabric_angle));
+       std::isnan(r.fabric_angle)
+           ? "none to compare: moduli or fabric are alike along several axes"
+           : fmt::format("{}; the fabric's {}, {:.1f}° apart", direction_text(r.principal.axes[0], r.dimension),
+                         direction_text(r.fabric.axes[0], r.dimension), r.fabric_angle));
   const double whole = r.moduli.total().trace();
   line("share of the springs",
        fmt::format("normal {:.1f} %, tangential {:.1f} % of the trace", 100 * r.moduli.normal.trace() / whole,
