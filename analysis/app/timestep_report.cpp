@@ -48,6 +48,11 @@ nlohmann::json damped_json(const TimestepReport& r) {
           {"methods", {{"lower", r.damped->method_lower}, {"upper", r.damped->method_upper}}}};
 }
 
+nlohmann::json probable_json(const StepInterval& v) {
+  if (v.probable_error == 0) return nullptr;
+  return {{"lambda_upper", v.lambda_probable}, {"dt", v.dt_probable}, {"probability_of_error", v.probable_error}};
+}
+
 nlohmann::json consistent_json(const TimestepReport& r) {
   if (!r.consistent) return nullptr;
   const auto& c = *r.consistent;
@@ -122,6 +127,9 @@ std::string text_of(const TimestepReport& r) {
   line("critical time step", fmt::format("{:.6g} … {:.6g} s   (width {:.2g} %)", v.dt_safe, v.dt_limit_upper,
                                          100 * (v.dt_limit_upper / v.dt_safe - 1)));
   line("  proved stable", fmt::format("{:.8g} s   by {}", v.dt_safe, v.method_upper));
+  if (v.probable_error > 0)
+    line("  stable, not proved", fmt::format("{:.8g} s   by a random test, wrong with a probability of at most {:.0e}",
+                                             v.dt_probable, v.probable_error));
   line("  proved unstable above", fmt::format("{:.8g} s   by {}", v.dt_limit_upper, v.method_lower));
   if (r.bracket)
     line("  found by stepping", fmt::format("{:.6g} s runs, {:.6g} s blows up   ({} steps)", r.bracket->stable,
@@ -150,6 +158,7 @@ nlohmann::json json_of(const TimestepReport& r) {
       {"lambda_upper", v.lambda_upper},
       {"dt_safe", number_or_null(v.dt_safe)},
       {"dt_limit_upper", number_or_null(v.dt_limit_upper)},
+      {"probable", probable_json(v)},
       {"methods",
        {{"lower", v.method_lower}, {"upper", v.method_upper}, {"products", v.products}, {"residual", v.residual}}},
       {"damped", damped_json(r)},

@@ -9,6 +9,7 @@
 #include "eigen/dense.hpp"
 #include "timestep/estimates.hpp"
 #include "timestep/lower_end.hpp"
+#include "timestep/random_test.hpp"
 #include "timestep/upper_end.hpp"
 
 namespace eg {
@@ -26,6 +27,15 @@ void solve_densely(const Network& network, StepInterval& interval) {
   interval.method_lower = interval.method_upper = "dense";
   interval.residual = top.residual;
   interval.mode = std::move(top.vector);
+}
+
+/// What a random test says of the width that no proof reached.
+void look_closer(const Network& network, const IntervalOptions& options, StepInterval& interval) {
+  const double sigma = interval.lambda_lower * (1 + options.loose);
+  if (interval.lambda_upper <= sigma) return;
+  const RandomTest test = random_test(network, interval.lambda_lower, sigma, options.seed);
+  interval.products += test.products;
+  if (test.below) interval.lambda_probable = sigma, interval.probable_error = test.error;
 }
 
 void describe_mode(const Network& network, StepInterval& interval) {
@@ -52,6 +62,8 @@ StepInterval interval_beside_bodies(const Network& network, const IntervalOption
   const StepInterval above = step_interval(giving, options);
   interval.lambda_upper = above.lambda_upper, interval.dt_safe = above.dt_safe;
   interval.method_upper = above.method_upper + ", walls that answer";
+  interval.lambda_probable = above.lambda_probable, interval.dt_probable = above.dt_probable;
+  interval.probable_error = above.probable_error;
   interval.products += above.products, interval.seconds += above.seconds;
   return interval;
 }
@@ -75,6 +87,7 @@ StepInterval step_interval(const Network& network, const IntervalOptions& option
       UpperEnd upper = find_upper_end(sides, weights, {interval.lambda_lower, options.width, options.loose});
       interval.lambda_upper = upper.value;
       interval.method_upper = std::move(upper.method);
+      look_closer(network, options, interval);
     }
   }
   if (interval.lambda_upper > 0)
@@ -82,6 +95,7 @@ StepInterval step_interval(const Network& network, const IntervalOptions& option
   else
     interval.mode.clear();
   interval.dt_safe = 2 / std::sqrt(interval.lambda_upper) * (1 - step_error);
+  if (interval.probable_error > 0) interval.dt_probable = 2 / std::sqrt(interval.lambda_probable) * (1 - step_error);
   interval.dt_limit_upper = 2 / std::sqrt(interval.lambda_lower) * (1 + step_error);
   interval.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return interval;

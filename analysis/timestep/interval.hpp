@@ -20,7 +20,11 @@ struct IntervalOptions {
 struct StepInterval {
   double lambda_lower = 0, lambda_upper = 0;  ///< lambda_lower ≤ λmax(M⁻¹K) ≤ lambda_upper [1/s²]
   std::string method_lower, method_upper;
+  double lambda_probable =
+      0;  ///< λmax < lambda_probable unless with this probability of error [1/s²]; below lambda_upper
+  double probable_error = 0;  ///< where no proof comes close; 0: the proof does, and there is nothing probable
   double dt_safe = 0;         ///< 2/√lambda_upper [s]: proved stable; infinite when nothing is stiff
+  double dt_probable = 0;     ///< 2/√lambda_probable [s]
   double dt_limit_upper = 0;  ///< 2/√lambda_lower [s]: the limit is not above; a larger step is proved unstable
   double residual = 0;        ///< ‖Ax − θx‖ of the Ritz pair, on the grains it was sought on [1/s²]
   int products = 0;           ///< with the matrix

@@ -23,14 +23,31 @@ std::vector<Index> grow_patch(const Sides& sides, std::vector<Index> grains, int
   return grains;
 }
 
-std::vector<Index> stiff_patch(const Sides& sides, const BlockRanges& ranges, double sigma, int shells) {
+namespace {
+
+template <class Below>
+std::vector<Index> patch_of_others(const Sides& sides, const BlockRanges& ranges, int shells, Below below) {
   std::vector<Index> grains;
   for (std::size_t g = 0; g < sides.size(); ++g)
-    if (ranges.high[g] >= sigma && !sides.of(g).empty()) grains.push_back(static_cast<Index>(g));
+    if (!sides.of(g).empty() && !below(g)) grains.push_back(static_cast<Index>(g));
   grains = grow_patch(sides, std::move(grains), shells);
   std::sort(grains.begin(), grains.end(),
             [&](Index a, Index b) { return ranges.low[a] != ranges.low[b] ? ranges.low[a] > ranges.low[b] : a < b; });
   return grains;
+}
+
+}  // namespace
+
+std::vector<Index> stiff_patch(const Sides& sides, const BlockRanges& ranges, double sigma, int shells) {
+  return patch_of_others(sides, ranges, shells, [&](std::size_t g) { return ranges.high[g] < sigma; });
+}
+
+std::vector<Index> stiff_patch(const WeightedContacts& contacts, const BlockRanges& ranges, double sigma, int shells) {
+  const Sides& sides = contacts.sides();
+  return patch_of_others(sides, ranges, shells, [&](std::size_t g) {
+    return ranges.high[g] < sigma ||
+           (ranges.low[g] < sigma && block_is_below(contacts.block(g), sides.of(g).size(), sigma));
+  });
 }
 
 std::vector<Index> places(const Sides& sides, std::span<const Index> grains) {

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "timestep/block_ranges.hpp"
+#include "timestep/matrix_weights.hpp"
 
 namespace eg {
 
@@ -12,6 +12,9 @@ std::vector<Index> grow_patch(const Sides& sides, std::vector<Index> grains, int
 
 /// The grains that splitting does not prove to be below sigma, with `shells` shells of neighbours, stiffest first.
 std::vector<Index> stiff_patch(const Sides& sides, const BlockRanges& ranges, double sigma, int shells);
+
+/// The same, fewer: a grain that its range leaves in doubt is settled by its block.
+std::vector<Index> stiff_patch(const WeightedContacts& contacts, const BlockRanges& ranges, double sigma, int shells);
 
 /// The network of these grains alone, in this order, with every other grain held fixed (its contacts become walls). Its
 /// matrix is a principal part of the whole one, so λmax of the patch ≤ λmax (Cauchy's interlacing).

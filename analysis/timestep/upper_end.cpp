@@ -11,11 +11,11 @@
 namespace eg {
 namespace {
 
-constexpr double drop = 1e-3, small_drop = 2e-4;  // fill given up by the incomplete factorisation
-constexpr std::size_t small = 500;                // grains that are always worth a factorisation
+constexpr double drop = 1e-3, small_drop = 3e-4;  // fill given up by the incomplete factorisation
+constexpr std::size_t small = 400;                // grains that are always worth a factorisation
 constexpr double hot = 0.97;                      // of σ: grains whose contacts get matrices
 constexpr int sweeps = 4;                         // of the matrices at each exponent
-constexpr int first_squaring = 3, last_squaring = 8;
+constexpr int first_squaring = 3, last_squaring = 7;
 
 class Search {
  public:
@@ -47,7 +47,7 @@ class Search {
   bool factorise(double width, int shells, double share, double fill) {
     const double sigma = goal(width);
     if (end_.value <= sigma) return true;
-    const auto patch = stiff_patch(sides_, ranges_, sigma, shells);
+    const auto patch = stiff_patch(contacts_, ranges_, sigma, shells);
     if (static_cast<double>(patch.size()) > std::max<double>(small, share * static_cast<double>(sides_.size())))
       return false;
     if (!factorise_below(contacts_, patch, sigma, fill).below) return false;
@@ -62,9 +62,9 @@ class Search {
       contacts_.make_matrices(ranges_.low, hot * std::min(1.0, goal(options_.loose) / maximum));
       for (int k = 0; k < sweeps; ++k) contacts_.sweep(squarings);
       contacts_.update(ranges_);
-      if (factorise(options_.loose, 1, 0.2, drop)) return;
+      if (factorise(options_.loose, 1, 0.2, small_drop)) return;
     }
-    if (!split()) factorise(options_.loose, 1, 0.4, small_drop);
+    split();
   }
 
   const Sides& sides_;

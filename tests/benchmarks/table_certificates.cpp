@@ -38,9 +38,12 @@ void print_row(const char* kind, const Scene& scene, State& state) {
   const double cheap =
       time_of(3, [&] { splitting = splitting_bound(network, {.scalar_sweeps = 8, .matrix_sweeps = 0}); });
   const double whole = time_of(3, [&] { interval = step_interval(network, {.dense_limit = 0}); });
-  fmt::print("{:<18} {:>8} {:>9} {:>9.3f} {:>9.1f} {:>9.1e} {:>9.1f} {:>9.1e}  {}\n", kind, network.size(),
+  const std::string probable =
+      interval.probable_error > 0 ? fmt::format("{:.1e}", interval.lambda_probable / interval.lambda_lower - 1) : "-";
+  fmt::print("{:<18} {:>8} {:>9} {:>9.3f} {:>9.1f} {:>9.1e} {:>9.1f} {:>9.1e} {:>9}  {}\n", kind, network.size(),
              network.springs.size(), 1e3 * step, (assembly + cheap) / step, splitting.value / interval.lambda_lower - 1,
-             (assembly + whole) / step, interval.lambda_upper / interval.lambda_lower - 1, interval.method_upper);
+             (assembly + whole) / step, interval.lambda_upper / interval.lambda_lower - 1, probable,
+             interval.method_upper);
   std::fflush(stdout);
 }
 
@@ -60,9 +63,9 @@ int main(int argc, char** argv) {
   std::vector<std::size_t> sizes;
   for (int k = 1; k < argc; ++k) sizes.push_back(static_cast<std::size_t>(std::atof(argv[k])));
   if (sizes.empty()) sizes = {1000, 10000, 100000};
-  fmt::print("{:<18} {:>8} {:>9} {:>9} | {:^19} | {:^19}\n", "", "", "", "one step", "in the run", "interval");
-  fmt::print("{:<18} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}  {}\n", "packing", "grains", "contacts", "ms", "steps",
-             "width", "steps", "width", "method of the upper end");
+  fmt::print("{:<18} {:>8} {:>9} {:>9} | {:^19} | {:^29}\n", "", "", "", "one step", "in the run", "interval");
+  fmt::print("{:<18} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}  {}\n", "packing", "grains", "contacts", "ms",
+             "steps", "width", "steps", "width", "probable", "method of the upper end");
   for (const std::size_t grains : sizes) {
     for (const char* grading : {"uniform", "wide", "gap", "single"}) {
       const Scene scene = test::scene_of("hertz-mindlin");

@@ -13,6 +13,7 @@
 #include "timestep/incomplete_cholesky.hpp"
 #include "timestep/interval.hpp"
 #include "timestep/patch.hpp"
+#include "timestep/random_test.hpp"
 #include "timestep/scalar_weights.hpp"
 #include "timestep/sparse_certificate.hpp"
 
@@ -158,6 +159,7 @@ void refuses(const Network& network, double lambda, std::uint64_t seed) {
   EXPECT_FALSE(factorise_below(contacts, all_of(sides), sigma, 1e-3).below) << seed;
   EXPECT_FALSE(sparse_cholesky_below(network, sigma)) << seed;
   EXPECT_GE(collatz_bound(network).value, lambda * (1 - 1e-13)) << seed;
+  EXPECT_FALSE(random_test(network, .99 * sigma, sigma, seed).below) << seed;
 }
 
 TEST(NeverWrong, TwoThousandRandomAndAdversarialNetworks) {
@@ -173,6 +175,7 @@ TEST(NeverWrong, TwoThousandRandomAndAdversarialNetworks) {
     for (const std::size_t limit : {std::size_t{0}, std::size_t{600}}) {
       const auto interval = step_interval(network, {.dense_limit = limit});
       EXPECT_LE(interval.lambda_lower, lambda + error) << seed;
+      EXPECT_TRUE(interval.probable_error == 0 || interval.lambda_probable >= lambda - error) << seed;
       EXPECT_GE(interval.lambda_upper, lambda - error) << seed;
       if (limit == 0) widths.push_back(interval.lambda_upper / interval.lambda_lower - 1);
     }
