@@ -149,6 +149,12 @@ void add_body_columns(Columns& c, const Scene& scene) {
     c.push_back({{bodies[b].name + "_stress", pressure}, [b](const RowSource& r) {
                    return body_load(r.scene, r.state, drive_of(r.scene, r.state, b)).stress();
                  }});
+    const bool looks_inside = std::ranges::any_of(scene.stages, [b](const StageSpec& s) {
+      return std::ranges::any_of(s.bodies, [b](const BodyDrive& d) { return d.body == b && d.region; });
+    });
+    if (looks_inside)
+      c.push_back({{bodies[b].name + "_region_stress", pressure},
+                   [b](const RowSource& r) { return r.state.bodies[b].inside; }});
     const bool round = std::ranges::any_of(
         scene.boundary.walls, [b](const WallSpec& w) { return w.body == b && w.shape == WallSpec::Shape::cylinder; });
     if (round)

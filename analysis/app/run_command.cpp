@@ -75,6 +75,7 @@ class Recorder {
     seen_[kind] = fmt::format("step {}: {}", state.step, line);
   }
   void stage_end(const State& state, const StageSpec& stage) {
+    if (stage.snapshot_at_end) snapshot(state, "stage_" + stage.name);
     const TargetMiss miss = worst_target(state, stage);
     if (miss.relative > 0.01)
       warn(state, "target of " + stage.name,

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/error.hpp"
+#include "measure/measure_sphere.hpp"
 #include "measure/volume.hpp"
 #include "state/wall_geometry.hpp"
 
@@ -17,6 +18,10 @@ constexpr double gain = 0.5;            // α; the proof needs α ≤ 2/3, the r
 constexpr double patience = 400;        // steps in which the part that builds up takes over a lasting speed
 constexpr double near_target = 0.05;    // it sets in there, or the servo would overshoot
 constexpr double slow_enough = 2.5e-3;  // inertial number below which straining is quasi-static
+
+constexpr std::uint64_t region_steps = 100;  // between looks into a servo's region
+constexpr double region_gain = 0.1;          // share of what it lacks that the boundary's target moves by
+constexpr double most_correction = 0.8;      // of the target: an empty region does not run away with the wall
 
 using Servo = BodyDrive::Servo;
 
@@ -48,21 +53,14 @@ const Wall* wall_of(const State& state, std::size_t body, std::uint8_t shape) {
 double round_area(const Scene& scene, const State& state, std::size_t body) {
   const WallSpec& spec = *cylinder_of(scene.boundary, body);
   const int axis = main_axis(spec.normal);
-  const double height = std::isnan(spec.share[0]) && axis >= 0 ? span(state, axis) : spec.share[0];
-  return spec.share[1] * wall_of(state, body, Wall::cylinder)->radius * height;
+  const double height = std::isnan(spec.height) && axis >= 0 ? span(state, axis) : spec.height;
+  return spec.angle * wall_of(state, body, Wall::cylinder)->radius * height;
 }
 
 /// Across `along`: of a ring between a hollow cylinder with that axis and a solid one, else the mean section inside a
 /// membrane, else of the box between planes.
-double flat_area(const Scene& scene, const State& state, const Vec3& along) {
-  double outer = 0, inner = 0, angle = 0;
-  for (const Wall& wall : state.walls)
-    if (wall.shape == Wall::cylinder && std::abs(dot(wall.normal, along)) > 1 - 1e-9) {
-      double& radius = wall.hollow ? outer : inner;
-      radius = std::max(radius, wall.radius);
-      if (wall.hollow) angle = cylinder_of(scene.boundary, wall.body)->share[1];
-    }
-  if (outer > 0) return 0.5 * angle * (outer * outer - inner * inner);
+double flat_area(const State& state, const Vec3& along) {
+  if (const double round = round_section(state, along); round > 0) return round;
   const int axis = main_axis(along);
   if (axis < 0) return not_given;
   if (state.membrane.volume > 0) return state.membrane.volume / span(state, axis);
@@ -72,8 +70,31 @@ double flat_area(const Scene& scene, const State& state, const Vec3& along) {
   return area;
 }
 
+/// On the boundary.
 double target_force(const Scene& scene, const State& state, const BodyDrive& drive) {
-  return drive.servo == Servo::force ? drive.target : drive.target * body_load(scene, state, drive).area;
+  if (drive.servo == Servo::force) return drive.target;
+  return (drive.target + state.bodies[drive.body].correction) * body_load(scene, state, drive).area;
+}
+
+/// Mean normal stress along `along` in a sphere [Pa]: the windows of measure/measure_sphere.hpp.
+double stress_inside(const Scene& scene, const State& state, const ServoRegion& region, const Vec3& along) {
+  const MeasureSphere sphere{region.centre, region.radius};
+  double sum = 0;
+  visit_contacts(scene, state, [&](const ContactPoint& c) {
+    const Vec3 from = state.grains.position[c.i].vec();
+    sum += share_inside(from, from + c.branch, sphere) * dot(c.force(), along) * dot(c.branch, along);
+  });
+  return sum / grain_volume(state.dimension, region.radius);
+}
+
+/// Looks into the region, and once the boundary has the stress that it aims at, moves that aim by a part of what the
+/// region lacks. Slow against the servo itself, whose proof of stability stays.
+void correct_target(const Scene& scene, State& state, const BodyDrive& drive, double excess, double target) {
+  Body& body = state.bodies[drive.body];
+  body.inside = stress_inside(scene, state, *drive.region, drive.along);
+  if (std::abs(excess) > near_target * target) return;
+  body.correction = std::clamp(body.correction + region_gain * (drive.target - body.inside),
+                               -most_correction * drive.target, most_correction * drive.target);
 }
 
 /// Speed at which the specimen strains with the inertial number of slow tests.
@@ -110,7 +131,7 @@ BodyLoad body_load(const Scene& scene, const State& state, const BodyDrive& driv
   } else if (drive.servo != Servo::none || plane) {
     const Vec3 along = drive.servo != Servo::none ? drive.along : -plane->normal;
     load.force = dot(body.force, along);
-    load.area = flat_area(scene, state, along);
+    load.area = flat_area(state, along);
   }
   if (const double given = scene.boundary.bodies[drive.body].area; !std::isnan(given)) load.area = given;
   return load;
@@ -136,6 +157,7 @@ void BodyControl::drive(State& state, double dt) const {
     body.opening = d.opening;
     if (d.servo == Servo::none) continue;
     const double target = target_force(scene_, state, d), excess = body_load(scene_, state, d).force - target;
+    if (d.region && state.stage_step % region_steps == 0) correct_target(scene_, state, d, excess, target);
     const bool touched = body.stiffness > 0;
     const double at_once = touched ? gain * excess / (body.stiffness * dt) : excess < 0 ? -d.max_speed : 0.0;
     const bool met = body.follow != 0 || std::abs(excess) < near_target * target;  // since the stage began
@@ -169,6 +191,7 @@ void begin_body_stage(const Scene& scene, State& state) {
     Body& body = state.bodies[b];
     const BodyDrive drive = drive_of(scene, state, b);
     body.moved = {}, body.opened = 0, body.follow = 0;
+    body.inside = body.correction = 0;
     for (int k = 0; k < 3; ++k)
       if (!drive.free[static_cast<std::size_t>(k)]) body.velocity[k] = drive.velocity[k];
     body.free = drive.free;
@@ -205,6 +228,7 @@ double servo_error(const Scene& scene, const State& state) {
     if (drive.servo == Servo::none) continue;
     const double target = target_force(scene, state, drive), force = body_load(scene, state, drive).force;
     worst = std::max(worst, std::abs(force - target) / std::max(std::abs(target), 1e-300));
+    if (drive.region) worst = std::max(worst, std::abs(state.bodies[b].inside / drive.target - 1));
   }
   return worst;
 }

@@ -14,6 +14,8 @@ class Engine {
   void set_friction(const std::vector<double>& friction);  ///< as State::friction
   void set_local_damping(double alpha) { kick_.local = alpha; }
 
+  void set_gravity(const Vec3& g) { kick_.gravity = g; }  ///< [m/s²]
+
   /// Makes every radius `factor` ≥ 1 times as large, masses and moments of inertia along with it (density stays).
   void grow(double factor);
 

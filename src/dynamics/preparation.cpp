@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/error.hpp"
 #include "boundary/cell_control.hpp"
 #include "measure/volume.hpp"
+#include "state/grain_mass.hpp"
 
 namespace eg {
 namespace {
@@ -58,13 +60,39 @@ void grow(State& state, Engine& engine) {
   if (done) progress.growth = 0;
 }
 
+/// Grains above `height` stand still, all others but the glued ones move. No height (NaN): all move.
+void hold_grains(const Scene& scene, double height, State& state) {
+  auto& g = state.grains;
+  std::vector<bool> glued(g.size());
+  for (const auto& one : state.glued) glued[one.grain] = true;
+  for (std::size_t i = 0; i < g.size(); ++i) {
+    if (glued[i]) continue;
+    const auto [mass, inertia] = grain_mass(state.dimension, scene.materials[g.material_of(i)].density, g.radius(i));
+    const bool held = g.position[i].vec()[state.dimension - 1] > height;
+    if (held) g.velocity[i] = Quad{};
+    if (!held && g.velocity[i].w == 0) g.velocity[i].w = 1 / mass;
+    if (!g.rotates()) continue;
+    if (held) g.spin[i] = Quad{};
+    if (!held && g.spin[i].w == 0) g.spin[i].w = 1 / inertia;
+  }
+}
+
 }  // namespace
 
-void begin_preparation(const StageSpec& stage, State& state) {
+void begin_preparation(const Scene& scene, State& state) {
+  const StageSpec& stage = scene.stages[state.stage];
   auto& progress = state.preparation;
   progress.settled = progress.met = false;
   progress.growth = progress.size < 1 ? stage.radius_growth : 0;
   progress.grown_until = 0;
+  const auto holds = [](const StageSpec& s) { return !std::isnan(s.held_above); };
+  if (std::ranges::any_of(scene.stages, holds)) hold_grains(scene, stage.held_above, state);
+}
+
+Vec3 gravity_in_force(const Scene& scene, const State& state) {
+  const auto& shake = scene.stages[state.stage].shake;
+  if (!shake) return scene.gravity;
+  return scene.gravity + std::cos(2 * std::numbers::pi * shake->frequency * state.stage_time) * shake->acceleration;
 }
 
 void prepare_grains(const StageSpec& stage, State& state, Engine& engine, bool at_rest) {

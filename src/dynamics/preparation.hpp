@@ -4,8 +4,12 @@
 
 namespace eg {
 
-/// A stage begins: its growth rate is in force from now on.
-void begin_preparation(const StageSpec&, State&);
+/// A stage begins: its growth rate is in force from now on, grains above its held_above stand still (they are given
+/// the inverse mass 0) and those that stood in the stage before are let go.
+void begin_preparation(const Scene&, State&);
+
+/// What acts on grains at this time of the stage: gravity, and the shaking of the apparatus [m/s²].
+Vec3 gravity_in_force(const Scene&, const State&);
 
 /// To be called after every tenth step.
 ///

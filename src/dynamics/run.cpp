@@ -28,12 +28,13 @@ void begin_stage(const Scene& scene, State& state) {
   state.cycle = {};
   state.policy = {};
   begin_body_stage(scene, state);
-  begin_preparation(stage, state);
+  begin_preparation(scene, state);
 }
 
 void apply_stage(const Scene& scene, const State& state, Engine& engine) {
   engine.set_friction(std::vector<double>(state.friction));
   engine.set_local_damping(damping_in_force(scene, state).local);
+  engine.set_gravity(gravity_in_force(scene, state));
 }
 
 void glue(const Scene& scene, State& state, Engine& engine) {
@@ -115,6 +116,11 @@ bool due(const State& state, const StageSpec& s, const Progress& before) {
          passes(before.displacement, now.displacement, s.record_every_displacement) || every(state, record_interval(s));
 }
 
+bool snapshot_due(const State& state, const StageSpec& s, const Progress& before) {
+  return every(state, s.snapshot_every_steps) ||
+         passes(before.displacement, largest_displacement(state), s.snapshot_every_displacement);
+}
+
 /// The policy's step, but not beyond what bodies that move freely allow. A fixed step stays as it was ordered.
 double next_step(const Scene& scene, State& state, StepPolicy& policy) {
   const double dt = policy.next_step(state);
@@ -150,6 +156,7 @@ bool run_stages(const Scene& scene, State& state, StepPolicy& policy, const RunO
     const double taken = state.dt;
     engine.drift();
     state.stage_time += taken;
+    engine.set_gravity(gravity_in_force(scene, state));
     engine.respond(next_step(scene, state, policy), level);
     control->set_rate(state, taken);
     bodies->drive(state, state.dt);
@@ -184,9 +191,7 @@ bool run_stages(const Scene& scene, State& state, StepPolicy& policy, const RunO
           "possible, max_strain_rate high enough, damping on?",
           stage.name, stage.max_steps, missed.text, missed.text.empty() ? "" : "; ", status.unbalanced));
     }
-    if (observer.snapshot && !ends && given(stage.snapshot_every_steps) &&
-        std::fmod(static_cast<double>(state.stage_step), stage.snapshot_every_steps) == 0)
-      observer.snapshot(state);
+    if (observer.snapshot && !ends && snapshot_due(state, stage, before)) observer.snapshot(state);
     if (observer.stop && observer.stop()) return state.stage >= scene.stages.size();
   }
   return true;

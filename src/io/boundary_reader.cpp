@@ -62,10 +62,10 @@ void read_cylinder(const TomlReader& t, int dimension, WallSpec& wall) {
   if (dimension == 3) t.direction("axis", dimension, wall.normal);
   t.number("radius", wall.radius, positive, required);
   t.choice<bool>("grains", wall.hollow, {{"inside", true}, {"outside", false}});
-  wall.share = {dimension == 2 ? 1.0 : not_given, 2 * std::numbers::pi};
-  if (dimension == 3) t.number("height", wall.share[0], positive);
+  if (dimension == 2) wall.height = 1;
+  if (dimension == 3) t.number("height", wall.height, positive);
   if (double degrees = 0; t.number("angle", degrees, above_up_to(0, 360)))
-    wall.share[1] = degrees * std::numbers::pi / 180;
+    wall.angle = degrees * std::numbers::pi / 180;
   if (t.has("normal")) throw t.error("normal", "is read with shape = \"plane\" only", "give the axis of a cylinder");
 }
 
@@ -102,7 +102,7 @@ void read_rings(const TomlReader& t, const Scene& scene, BoundarySpec& b) {
   t.finish();
   ring.shape = WallSpec::Shape::cylinder;
   ring.along = ring.normal;
-  ring.share = {height / count, 2 * std::numbers::pi};
+  ring.height = height / count;
   for (int k = 0; k < count; ++k) {
     ring.name = fmt::format("{}{}", name, k + 1);
     ring.body = body_named(b, ring.name, name);
@@ -199,7 +199,7 @@ void read_servo(const TomlReader& t, const Scene& scene, BodyDrive& drive) {
   drive.radial = radial;
   const bool directed = t.direction("along", scene.dimension, drive.along);
   if (drive.servo == Servo::none) {
-    for (const char* key : {"along", "max_speed"})
+    for (const char* key : {"along", "max_speed", "region"})
       if (t.has(key)) throw t.error(key, "needs a force or a stress to aim at", "remove it or add one");
     return;
   }
@@ -207,9 +207,18 @@ void read_servo(const TomlReader& t, const Scene& scene, BodyDrive& drive) {
   if (radial) {
     if (!is_round(scene.boundary, drive.body))
       throw t.error("radial_stress", "needs a cylinder", "use stress, which acts along the normal of a plane");
+    if (t.has("region")) throw t.error("region", "needs a direction", "use stress along a plane's normal");
     return;
   }
   if (!directed) drive.along = outward(scene.boundary, drive.body, scene.dimension);
+  if (const auto region = t.table("region")) {
+    drive.region.emplace();
+    region->vector("centre", scene.dimension, drive.region->centre, required);
+    region->number("radius", drive.region->radius, positive, required);
+    region->finish();
+    if (!stress || !(drive.target > 0))
+      throw t.error("region", "needs a stress above 0 to aim at there", "give stress along a plane's normal");
+  }
   if (norm(drive.along) == 0)
     throw t.error(force ? "force" : "stress", "has no direction: the body has no plane",
                   "add along = [x, y, z], pointing out of the specimen");

@@ -79,7 +79,7 @@ void visit_list(Archive& a, L& list) {
 template <class Archive, class B>
 void visit_bodies(Archive& a, B& bodies) {
   [[maybe_unused]] const auto [velocity, opening, force, spread, magnitude, stiffness, glued_stiffness, moved, opened,
-                               mass, free, follow, yields] = Body{};  // all its fields
+                               mass, free, follow, inside, correction, yields] = Body{};  // all its fields
   a.column(
       "bodies/velocity", "m/s", bodies, [](auto& b) -> auto& { return b.velocity; });
   a.column(
@@ -105,13 +105,17 @@ void visit_bodies(Archive& a, B& bodies) {
   a.column(
       "bodies/follow", "m/s", bodies, [](auto& b) -> auto& { return b.follow; });
   a.column(
+      "bodies/inside", "Pa", bodies, [](auto& b) -> auto& { return b.inside; });
+  a.column(
+      "bodies/correction", "Pa", bodies, [](auto& b) -> auto& { return b.correction; });
+  a.column(
       "bodies/yields", "-", bodies, [](auto& b) -> auto& { return b.yields; });
 }
 
 template <class Archive, class W>
 void visit_walls(Archive& a, W& walls) {
-  [[maybe_unused]] const auto [shape, point, normal, radius, hollow, side_b, side_c, length, owned, spoke, spokes,
-                               along, low, high, body, material, moved] = Wall{};  // all its fields
+  [[maybe_unused]] const auto [shape, point, normal, radius, hollow, angle, side_b, side_c, length, owned, spoke,
+                               spokes, along, low, high, body, material, moved] = Wall{};  // all its fields
   a.column(
       "walls/shape", "-", walls, [](auto& w) -> auto& { return w.shape; });
   a.column(
@@ -122,6 +126,8 @@ void visit_walls(Archive& a, W& walls) {
       "walls/radius", "m", walls, [](auto& w) -> auto& { return w.radius; });
   a.column(
       "walls/hollow", "-", walls, [](auto& w) -> auto& { return w.hollow; });
+  a.column(
+      "walls/angle", "rad", walls, [](auto& w) -> auto& { return w.angle; });
   a.column(
       "walls/side_b", "m", walls, [](auto& w) -> auto& { return w.side_b; });
   a.column(

@@ -212,6 +212,8 @@ void read_record(const TomlReader& t, StageSpec& stage) {
   t.number("every_strain", stage.record_every_strain, positive);
   t.number("every_displacement", stage.record_every_displacement, positive);
   t.integer("snapshot_every_steps", stage.snapshot_every_steps, counting);
+  t.number("snapshot_every_displacement", stage.snapshot_every_displacement, positive);
+  t.flag("snapshot_at_end", stage.snapshot_at_end);
   t.finish();
 }
 
@@ -226,6 +228,14 @@ void read_bond(const TomlReader& t, const Scene& scene, StageSpec& stage) {
     throw t.error("", fmt::format("needs a law with bonds, which \"{}\" is not", scene.contact.law),
                   "set contact.law = \"linear-parallel-bond\"");
   stage.bond = bond;
+}
+
+ShakeSpec read_shake(const TomlReader& t, int dimension) {
+  ShakeSpec shake;
+  t.vector("acceleration", dimension, shake.acceleration, Need::required);
+  t.number("frequency", shake.frequency, positive, Need::required);
+  t.finish();
+  return shake;
 }
 
 /// friction = { start = …, void_ratio = … } or { start = …, mean_stress = … }
@@ -254,7 +264,11 @@ void check_preparation(const TomlReader& t, const Scene& scene, const StageSpec&
 }
 
 void check_cell(const TomlReader& t, const Scene& scene) {
-  if (scene.boundary.kind == BoundarySpec::Kind::periodic) return;
+  if (scene.boundary.kind == BoundarySpec::Kind::periodic) {
+    for (const char* key : {"shake", "held_above"})
+      if (t.has(key)) throw t.error(key, "needs a container", "set boundary.type = \"box\" or \"free\"");
+    return;
+  }
   if (t.is_table("friction")) throw t.error("friction", "as a schedule needs a periodic cell", "give a number");
   for (const char* key : {"stress", "strain_rate", "hold", "cycle"})
     if (t.has(key)) throw t.error(key, "needs a periodic cell", "set boundary.type = \"periodic\"");
@@ -275,6 +289,8 @@ StageSpec read_stage(const TomlReader& t, const Scene& scene) {
     t.number("friction", stage.friction, non_negative);
   t.number("radius_growth", stage.radius_growth, positive);
   t.number("local_damping", stage.local_damping, from_below(0, 1));
+  if (const auto shake = t.table("shake")) stage.shake = read_shake(*shake, scene.dimension);
+  t.number("held_above", stage.held_above);
   if (const auto bond = t.table("bond")) read_bond(*bond, scene, stage);
   t.number("max_strain_rate", stage.max_strain_rate, positive);
   t.integer("max_steps", stage.max_steps, counting);

@@ -32,6 +32,8 @@ void read_cylinder(const TomlReader& t, int dimension, TrimSpec& trim) {
   std::array<double, 2> centre{};
   t.numbers("centre", centre, any_number, Need::required);
   t.number("radius", trim.radius, positive, Need::required);
+  if (t.number("inner_radius", trim.inner_radius, non_negative) && trim.inner_radius >= trim.radius)
+    throw t.error("inner_radius", "leaves nothing of the cylinder", "make it smaller than radius");
   t.finish();
   for (int k = 0; k < 2; ++k) {
     const int across = (trim.axis + 1 + k) % 3;

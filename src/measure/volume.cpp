@@ -34,9 +34,24 @@ double lens_volume(int dimension, double ri, double rj, double distance) {
   return cap_volume(dimension, ri, ri - hi) + cap_volume(dimension, rj, rj - hj);
 }
 
+/// Whether both walls are there for the same grains, or one of them for all.
+static bool side_by_side(const Wall& a, const Wall& b) {
+  if (!a.windowed() || !b.windowed()) return true;
+  const double shift = dot(b.point - a.point, a.along);
+  return dot(a.along, b.along) > 1 - 1e-9 && a.low < b.high + shift && b.low + shift < a.high;
+}
+
 Extent wall_gap(const State& state, int k) {
   Extent gap;
-  for (const Wall& wall : state.walls) {
+  for (const Wall& lower : state.walls) {
+    if (lower.shape != Wall::plane || lower.normal[k] != 1) continue;
+    for (const Wall& upper : state.walls)
+      if (upper.shape == Wall::plane && upper.normal[k] == -1 && side_by_side(lower, upper) &&
+          upper.point[k] - lower.point[k] < gap.length())
+        gap = {lower.point[k], upper.point[k]};
+  }
+  if (std::isfinite(gap.length())) return gap;
+  for (const Wall& wall : state.walls) {  // nothing face to face
     if (wall.shape != Wall::plane) continue;
     if (wall.normal[k] == 1) gap.low = std::max(gap.low, wall.point[k]);
     if (wall.normal[k] == -1) gap.high = std::min(gap.high, wall.point[k]);
@@ -44,15 +59,27 @@ Extent wall_gap(const State& state, int k) {
   return gap;
 }
 
+double round_section(const State& state, const Vec3& axis) {
+  double outer = 0, inner = 0, angle = 0;
+  for (const Wall& wall : state.walls)
+    if (wall.shape == Wall::cylinder && std::abs(dot(wall.normal, axis)) > 1 - 1e-9) {
+      double& radius = wall.hollow ? outer : inner;
+      radius = std::max(radius, wall.radius);
+      if (wall.hollow) angle = wall.angle;
+    }
+  return 0.5 * angle * (outer * outer - inner * inner);
+}
+
 double specimen_volume(const State& state) {
   if (state.membrane.volume > 0) return state.membrane.volume;
   Mat3 edges = state.cell.h;
   for (int k = 0; k < state.dimension; ++k)
     if (const double gap = wall_gap(state, k).length(); std::isfinite(gap)) edges(k, k) = gap;
-  for (const Wall& wall : state.walls)
-    if (wall.shape == Wall::cylinder && wall.hollow)
-      for (int k = 0; k < 3; ++k)
-        if (std::abs(wall.normal[k]) == 1) return std::numbers::pi * wall.radius * wall.radius * edges(k, k);
+  for (int k = 0; k < 3; ++k) {
+    Vec3 axis;
+    axis[k] = 1;
+    if (const double section = round_section(state, axis); section > 0) return section * edges(k, k);
+  }
   return edges(0, 0) * edges(1, 1) * edges(2, 2);
 }
 

@@ -15,11 +15,16 @@ double lens_volume(int dimension, double ri, double rj, double distance);
 /// Part of a sphere beyond a plane at `height` from its centre, −radius ≤ height ≤ radius (2D: of a disk).
 double cap_volume(int dimension, double radius, double height);
 
-/// What walls across axis k leave free [m], the innermost ones where they have moved to; infinite where there is none.
+/// What walls across axis k leave free [m], the two nearest to each other of those that stand face to face, where they
+/// have moved to: the halves of a shear box stay as wide as they were. Infinite where there is none.
 Extent wall_gap(const State&, int k);
 
+/// Section across `axis` (unit) of what hollow cylinders along it leave of the solid ones within them, in the angle that
+/// grains press on [m²]; the widest of each count. 0 without a hollow one.
+double round_section(const State&, const Vec3& axis);
+
 /// Volume of the specimen: of the cell; between parallel walls across x, y or z, the innermost ones count, wherever
-/// they have moved; of the inside of a membrane as it was last laid.
+/// they have moved; round_section() times height; of the inside of a membrane as it was last laid.
 double specimen_volume(const State&);
 
 /// Sum of the grains' own volumes: what overlaps counts twice. Of grains on a membrane, which runs through their

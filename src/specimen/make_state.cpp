@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "base/error.hpp"
@@ -13,6 +12,7 @@
 #include "specimen/make_walls.hpp"
 #include "specimen/trim.hpp"
 #include "state/friction.hpp"
+#include "state/grain_mass.hpp"
 
 namespace eg {
 
@@ -82,12 +82,6 @@ bool grains_can_turn(const Scene& scene) {
 }
 
 }  // namespace
-
-GrainMass grain_mass(int dimension, double density, double radius) {
-  const double square = radius * radius;
-  const double mass = density * std::numbers::pi * square * (dimension == 3 ? 4 * radius / 3 : 1.0);
-  return {mass, (dimension == 3 ? 0.4 : 0.5) * mass * square};
-}
 
 void fit_rotation(const Scene& scene, State& state) {
   auto& grains = state.grains;

@@ -5,12 +5,6 @@
 
 namespace eg {
 
-/// 3D: sphere, m = ρ 4/3 π R³, I = 2/5 m R². 2D: disk of unit thickness, m = ρ π R², I = 1/2 m R².
-struct GrainMass {
-  double mass, inertia;  ///< [kg], [kg m²] (2D: per metre of thickness)
-};
-GrainMass grain_mass(int dimension, double density, double radius);
-
 /// Grains of the scene's first material at rest where the packing has them, numbered from 1 in its order; no contacts
 /// yet. A scene with a trim takes what that leaves (specimen/trim.hpp). The scene's boundary decides what becomes of
 /// the box: a periodic cell (centres are wrapped into it), walls (the lower and upper one of x, then of y, then of z,

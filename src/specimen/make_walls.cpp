@@ -39,7 +39,7 @@ Wall wall_of(const Scene& scene, const WallSpec& spec) {
   Wall wall;
   wall.shape = spec.shape == WallSpec::Shape::plane ? Wall::plane : Wall::cylinder;
   wall.point = spec.point, wall.normal = (1 / norm(spec.normal)) * spec.normal;
-  if (wall.shape == Wall::cylinder) wall.radius = spec.radius, wall.hollow = spec.hollow;
+  if (wall.shape == Wall::cylinder) wall.radius = spec.radius, wall.hollow = spec.hollow, wall.angle = spec.angle;
   wall.along = spec.along, wall.low = spec.window[0], wall.high = spec.window[1];
   wall.body = static_cast<Index>(spec.body);
   wall.material = material_index(scene, spec.material);

@@ -18,7 +18,8 @@ bool keeps(const TrimSpec& t, int dimension, const Vec3& x, double radius) {
     if (x[k] - room < t.low[k] || x[k] + room > t.high[k]) return false;
   if (t.shape == TrimSpec::Shape::box) return true;
   const int a = (t.axis + 1) % 3, b = (t.axis + 2) % 3;
-  return std::hypot(x[a] - t.centre[a], x[b] - t.centre[b]) + room <= t.radius;
+  const double distance = std::hypot(x[a] - t.centre[a], x[b] - t.centre[b]);
+  return distance + room <= t.radius && distance - room >= t.inner_radius;
 }
 
 }  // namespace
@@ -44,8 +45,10 @@ Packing trimmed(const Scene& scene, const Packing& packing) {
                                                       : "make it larger or move it");
   Vec3 corner;
   for (int k = 0; k < packing.dimension; ++k) {
-    corner[k] = std::isfinite(t.low[k]) ? t.low[k] : low[k];
-    kept.box[k] = (std::isfinite(t.high[k]) ? t.high[k] : high[k]) - corner[k];
+    // a cut beyond the source's box and grains leaves the sides of that
+    corner[k] = std::isfinite(t.low[k]) ? std::max(t.low[k], std::min(0.0, low[k])) : low[k];
+    const double end = std::isfinite(t.high[k]) ? std::min(t.high[k], std::max(packing.box[k], high[k])) : high[k];
+    kept.box[k] = end - corner[k];
   }
   for (auto& x : kept.position) x -= corner;
   return kept;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,7 +44,7 @@ struct Grading {
   }
 };
 
-/// What is left of a packing: the grains inside a box, or inside a cylinder along an axis.
+/// What is left of a packing: the grains inside a box, or inside a cylinder along an axis, solid or hollow.
 struct TrimSpec {
   enum class Shape { box, cylinder };
   enum class Keep { whole, centre };  ///< grains that lie inside as a whole, or with their centre
@@ -51,8 +52,9 @@ struct TrimSpec {
   Keep keep = Keep::whole;
   Vec3 low{-unbounded, -unbounded, -unbounded}, high{unbounded, unbounded, unbounded};  ///< around the shape [m]
   int axis = 2;                                                                         ///< of a cylinder; 2D: 2
-  Vec3 centre;        ///< a point of the cylinder's axis [m]
-  double radius = 0;  ///< of a cylinder [m]
+  Vec3 centre;              ///< a point of the cylinder's axis [m]
+  double radius = 0;        ///< of a cylinder [m]
+  double inner_radius = 0;  ///< of a hole along its axis [m]
 
  private:
   static constexpr double unbounded = std::numeric_limits<double>::infinity();
@@ -93,11 +95,12 @@ struct WallSpec {
   enum class Shape { plane, cylinder };
   std::string name;
   Shape shape = Shape::plane;
-  Vec3 point, normal;           ///< [m]; plane: unit, grains lie on this side; cylinder: unit, along its axis
-  double radius = not_given;    ///< cylinder [m]
-  bool hollow = true;           ///< cylinder: grains are inside
-  std::array<double, 2> share;  ///< cylinder: height [m] (NaN: between planes across its axis) and angle [rad] of the
-                                ///< part that grains press on, for stresses
+  Vec3 point, normal;         ///< [m]; plane: unit, grains lie on this side; cylinder: unit, along its axis
+  double radius = not_given;  ///< cylinder [m]
+  bool hollow = true;         ///< cylinder: grains are inside
+  /// Cylinder: height [m] (NaN: between planes across its axis) and angle [rad] of the part that grains press on, for
+  /// stresses and volumes.
+  double height = not_given, angle = 2 * std::numbers::pi;
   Vec3 along;  ///< unit; only grains whose centre has low ≤ (x − point)·along < high feel the wall
   std::array<double, 2> window{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   std::string material;  ///< a name of [material.*]
@@ -188,6 +191,12 @@ struct CycleSpec {
   double largest_strain = std::numeric_limits<double>::infinity();  ///< of any component: the stage ends there [-]
 };
 
+/// A sphere (2D: circle) inside the specimen whose mean stress a servo aims at.
+struct ServoRegion {
+  Vec3 centre;        ///< [m]
+  double radius = 0;  ///< [m]
+};
+
 /// [stage.body.NAME]: how a body moves during a stage. Bodies without an entry move with BodySpec::velocity.
 struct BodyDrive {
   enum class Servo { none, force, stress };
@@ -198,8 +207,9 @@ struct BodyDrive {
   double target = 0;    ///< [N], or [Pa] (2D: N/m) on the loaded area; of the grains on the body, along `along`
   Vec3 along;           ///< unit, out of the specimen; not read when radial
   bool radial = false;  ///< the radius answers
-  double max_speed = not_given;  ///< of the servo [m/s]; default: so that the inertial number stays below 2.5e-3
-  std::array<bool, 3> free{};    ///< axes along which the forces of the grains accelerate it
+  std::optional<ServoRegion> region;  ///< the target is the stress there along `along`, not that on the boundary
+  double max_speed = not_given;       ///< of the servo [m/s]; default: so that the inertial number stays below 2.5e-3
+  std::array<bool, 3> free{};         ///< axes along which the forces of the grains accelerate it
 };
 
 /// Bonds made at the beginning of a stage.
@@ -214,6 +224,13 @@ struct FrictionSchedule {
   double mean_stress = not_given;  ///< [Pa] (2D: N/m)
 };
 
+/// The apparatus is shaken: it moves by s = −a/(2πf)² (1 − cos 2πft), so that grains seen from it feel a further
+/// acceleration a cos 2πft, which is how it is computed.
+struct ShakeSpec {
+  Vec3 acceleration;     ///< a [m/s²]
+  double frequency = 0;  ///< f [Hz]
+};
+
 /// [[stage]]
 struct StageSpec {
   std::string name;
@@ -222,6 +239,8 @@ struct StageSpec {
   std::optional<FrictionSchedule> friction_schedule;
   double radius_growth = 0;             ///< of all radii until they have the sizes of the grading [1/s]
   std::optional<double> local_damping;  ///< replaces damping.local during this stage
+  std::optional<ShakeSpec> shake;
+  double held_above = not_given;  ///< grains whose centre is higher than this (z; 2D: y) stay where they are [m]
   // strain: axes x, y, z, then yz, xz, xy (engineering shear rate, for a cell with tilt)
   std::array<ComponentControl, 6> control{};
   std::vector<CellCondition> hold;  ///< as many as components are free
@@ -247,6 +266,8 @@ struct StageSpec {
   double record_every_strain = not_given;
   double record_every_displacement = not_given;  ///< [m]
   double snapshot_every_steps = not_given;
+  double snapshot_every_displacement = not_given;  ///< [m]
+  bool snapshot_at_end = false;                    ///< of the stage, under its name
 };
 
 struct Scene {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 
 #include "base/vec.hpp"
 
@@ -22,6 +23,8 @@ struct Body {
   double mass = 0;             ///< [kg], of a body that some stage sets free
   std::array<bool, 3> free{};  ///< axes along which it goes where forces take it
   double follow = 0;           ///< part of a servo's speed that has built up, outward [m/s]
+  double inside = 0;           ///< stress in a servo's region when it last looked [Pa]
+  double correction = 0;       ///< what is added to the target on the boundary for the sake of that region [Pa]
   bool yields = false;         ///< it answers the forces on it: free along an axis, or driven by a servo
 };
 
@@ -30,10 +33,11 @@ struct Body {
 struct Wall {
   static constexpr std::uint8_t plane = 0, cylinder = 1, face = 2, rim = 3, tip = 4;
   std::uint8_t shape = plane;
-  Vec3 point;              ///< on the plane; on the axis; first corner of the face; one end of the rim; the tip [m]
-  Vec3 normal;             ///< unit: plane, face: towards the grains; cylinder, rim: along it
-  double radius = 0;       ///< cylinder [m]
-  bool hollow = true;      ///< cylinder: grains are inside
+  Vec3 point;          ///< on the plane; on the axis; first corner of the face; one end of the rim; the tip [m]
+  Vec3 normal;         ///< unit: plane, face: towards the grains; cylinder, rim: along it
+  double radius = 0;   ///< cylinder [m]
+  bool hollow = true;  ///< cylinder: grains are inside
+  double angle = 2 * std::numbers::pi;  ///< cylinder: of the part that grains press on [rad]
   Vec3 side_b, side_c;     ///< face: to its other corners [m]; rim: unit vectors into its faces, across it (0: no face)
   double length = 0;       ///< rim [m]
   std::uint8_t owned = 0;  ///< face: bits 0–2: a grain exactly over edge ab, bc, ca is its own

@@ -176,6 +176,35 @@ TEST(Volume, SpecimenBetweenWalls) {
   EXPECT_EQ(specimen_volume(state), 3);
 }
 
+TEST(Volume, HalvesOfAShearBoxStayAsWideAsTheyWere) {
+  State state;
+  state.cell.h(0, 0) = 9, state.cell.h(1, 1) = 3, state.cell.h(2, 2) = 4;
+  for (const bool upper : {false, true}) {
+    Wall left, right;
+    left.normal = {1, 0, 0}, right.normal = {-1, 0, 0}, right.point = {2, 0, 0};
+    left.along = right.along = {0, 0, 1};
+    (upper ? left.low : left.high) = 2, (upper ? right.low : right.high) = 2;
+    if (!upper) left.point.x += 0.5, right.point.x += 0.5;  // it has moved
+    state.walls.push_back(left), state.walls.push_back(right);
+  }
+  EXPECT_EQ(specimen_volume(state), 2 * 3 * 4);
+  Wall stop;
+  stop.normal = {-1, 0, 0}, stop.point = {1, 0, 0};  // stands before both
+  state.walls.push_back(stop);
+  EXPECT_EQ(wall_gap(state, 0).length(), 0.5);
+}
+
+TEST(Volume, AQuarterOfAHollowCylinder) {
+  State state;
+  state.cell.h(2, 2) = 2;
+  Wall outer, inner;
+  outer.shape = inner.shape = Wall::cylinder, outer.normal = inner.normal = {0, 0, 1};
+  outer.radius = 5, inner.radius = 3, inner.hollow = false, outer.angle = inner.angle = pi / 2;
+  state.walls = {outer, inner};
+  EXPECT_DOUBLE_EQ(specimen_volume(state), pi / 4 * (25 - 9) * 2);
+  EXPECT_EQ(round_section(state, {1, 0, 0}), 0);
+}
+
 TEST(Volume, SizeStatistics) {
   State state;
   for (const double r : {1., 1., 1., 2.}) state.grains.position.push_back({0, 0, 0, r});

@@ -57,6 +57,28 @@ TEST(Trim, ACylinderKeepsWhatLiesInIt) {
   EXPECT_EQ(whole.grains.id.back(), whole.grains.size());
 }
 
+TEST(Trim, AHollowCylinderAndTheSolidOneWithinItAreTheWhole) {
+  const auto size = [](const std::string& radii) {
+    return state_with("{ keep = \"centre\", cylinder = { centre = [16, 17], " + radii + " } }").grains.size();
+  };
+  EXPECT_EQ(size("radius = 12, inner_radius = 5.1") + size("radius = 5.1"), size("radius = 12"));
+  const State hollow = state_with("{ cylinder = { centre = [16, 17], radius = 12, inner_radius = 5 } }");
+  for (const auto& x : hollow.grains.position) EXPECT_GE(std::hypot(x.x - 12, x.y - 12) - x.w, 5 - 1e-8);
+}
+
+TEST(Trim, AQuarterIsCutAroundACornerAndStaysInItsPlace) {
+  const State quarter = state_with("{ cylinder = { centre = [0, 0], radius = 25, inner_radius = 4 } }");
+  for (const auto& x : quarter.grains.position) {
+    EXPECT_GE(std::min(x.x, x.y) - x.w, -1e-8);
+    EXPECT_LE(std::hypot(x.x, x.y) + x.w, 25 + 1e-8);
+  }
+  EXPECT_EQ(quarter.cell.h(0, 0), 25);
+  EXPECT_EQ(quarter.cell.h(1, 1), 25);
+  const State wide = state_with("{ box = { low = [-9, -9, -9], high = [20, 99, 10] } }");  // no wider than its source
+  EXPECT_EQ(wide.cell.h(0, 0), 20);
+  EXPECT_NEAR(wide.cell.h(1, 1), 12 * std::numbers::sqrt2 * 2, 2);
+}
+
 TEST(Trim, TheAxisMayLieAlongAnyAxis) {
   const auto size = [](const std::string& axis) {
     return state_with("{ cylinder = { axis = \"" + axis + "\", centre = [16, 17], radius = 9.1 } }").grains.size();
@@ -99,6 +121,9 @@ TEST(Trim, SaysWhatIsWrong) {
             "a.toml:16: specimen.trim names neither box nor cylinder; write t");
   EXPECT_EQ(message_of("{ box = { low = [1, 1, 1], high = [2, 0, 2] } }"),
             "a.toml:16: specimen.trim.box ends below its beginning; give ascending ends");
+  EXPECT_EQ(message_of("{ cylinder = { centre = [1, 1], radius = 1, inner_radius = 1 } }"),
+            "a.toml:16: specimen.trim.cylinder.inner_radius = 1.0 leaves nothing of the cylinder; make it smaller than "
+            "radius");
   EXPECT_EQ(message_of("{ box = { low = [1, 1, 1], high = [2, 2, 2] } }", "periodic"),
             "a.toml:16: specimen.trim leaves nothing that is periodic; set boundary.type to \"box\" or \"free\"");
   EXPECT_NE(message_of("{ cylinder = { centre = [1, 1], radius = 1, form = 0 } }").find("did you mean"),

@@ -13,6 +13,7 @@
 #include "boundary/body_control.hpp"
 #include "dynamics/run.hpp"
 #include "io/scene_file.hpp"
+#include "measure/measure_sphere.hpp"
 #include "support/scene_text.hpp"
 #include "support/scenes.hpp"
 #include "timestep/controller.hpp"
@@ -85,6 +86,40 @@ TEST(Servo, HoldsItsTargetWithoutOvershoot) {
   EXPECT_LT(most, 1.02 * 100e3);
   EXPECT_LT(worst, 5e-3);
   EXPECT_NEAR(contact_stress(state)(2, 2), 100e3, 1e-2 * 100e3);  // inside as on the boundary
+}
+
+/// Rough side walls carry a part: inside there is less than on the lid.
+TEST(Servo, HoldsTheStressInsideARegion) {
+  const std::string stages = R"(
+[[stage]]
+name = "load"
+local_damping = 0.4
+body = { z_high = { stress = 100e3REGION } }
+until = { stress_error = 3e-3, unbalanced_force = 1e-4 }
+max_steps = 200000
+)";
+  const auto inside_of = [&](const std::string& region) {
+    std::string text = grains + box + stages;
+    text.replace(text.find("REGION"), 6, region);
+    const Scene scene = parse_scene(text, "a.toml");
+    State state = test::state_of(scene);
+    run(scene, state);
+    std::vector<ContactPoint> contacts;
+    visit_contacts(scene, state, [&](const ContactPoint& c) { contacts.push_back(c); });
+    return measure_sphere(state, contacts, {{5e-3, 5e-3, 4e-3}, 2.5e-3}).stress(2, 2);
+  };
+  EXPECT_NEAR(inside_of(", region = { centre = [5e-3, 5e-3, 4e-3], radius = 2.5e-3 }"), 100e3, 0.01 * 100e3);
+  EXPECT_GT(std::abs(inside_of("") - 100e3), 0.02 * 100e3);
+}
+
+TEST(Servo, RegionsAreForStressesAlongANormal) {
+  const auto drive = [](const std::string& keys) {
+    parse_scene(grains + box + "[[stage]]\nname = \"load\"\nbody = { z_high = { " + keys +
+                    ", region = { centre = [0, 0, 0], radius = 1 } } }\nuntil = { steps = 5 }\n",
+                "a.toml");
+  };
+  EXPECT_NO_THROW(drive("stress = 1e5"));
+  for (const char* keys : {"force = 10", "velocity = [0, 0, 1]", "stress = 0"}) EXPECT_THROW(drive(keys), InputError);
 }
 
 TEST(Servo, UnreachableTargetIsSaid) {

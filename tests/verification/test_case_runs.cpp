@@ -84,8 +84,8 @@ TEST(Case, FrictionlessLimit) {
   EXPECT_NEAR(run["backbone_coordination"], 6, 0.25);
 }
 
-TEST(Case, DisksBiaxial) {
-  const CaseRun run("disks_biaxial", "--set specimen.count=500 --set stage[2].until.axial_strain=0.02");
+TEST(Case, DisksPeriodic) {
+  const CaseRun run("disks_periodic", "--set specimen.count=500 --set stage[2].until.axial_strain=0.02");
   ASSERT_TRUE(run.complete());
   EXPECT_NEAR(run.result().at("stress_Pa").at(0).get<double>() / 100e3, 1, 0.05);
   const auto stage = run.column("stage"), deviator = run.column("deviator"), strain = run.column("strain_y");

@@ -198,7 +198,7 @@ void expect_probed(const Specimen& s) {
 }
 TEST(Probing, HertzianSpheres) { expect_probed(prepared("demo", "200", 2)); }
 TEST(Probing, LinearSpheres) { expect_probed(prepared("stiffness_linear", "200", 2)); }
-TEST(Probing, LinearDisks) { expect_probed(prepared("disks_biaxial", "300", 1)); }
+TEST(Probing, LinearDisks) { expect_probed(prepared("disks_periodic", "300", 1)); }
 
 // Grains in a box: an array of cubic cells between rough plates is a bar of springs.
 TEST(Platens, SimpleCubicBetweenPlates) {
