@@ -20,7 +20,7 @@ bool given(double x) { return !std::isnan(x); }
 
 void begin_stage(const Scene& scene, State& state) {
   const StageSpec& stage = scene.stages[state.stage];
-  state.friction = pair_friction(scene, stage.friction);
+  state.friction = pair_friction(scene, stage);
   state.stage_step = 0;
   state.stage_time = 0;
   state.cell.strain = state.cell.strain_low = Mat3{};

@@ -251,6 +251,15 @@ void read_friction_schedule(const TomlReader& t, StageSpec& stage) {
   stage.friction = start, stage.friction_schedule = schedule;
 }
 
+/// friction = { MATERIAL = …, … }
+void read_material_friction(const TomlReader& t, const Scene& scene, StageSpec& stage) {
+  for (const Material& m : scene.materials) {
+    auto& friction = stage.material_friction.emplace_back();
+    t.number(m.name, friction, non_negative);
+  }
+  t.finish();
+}
+
 /// What a stage that changes its grains needs beside it.
 void check_preparation(const TomlReader& t, const Scene& scene, const StageSpec& stage) {
   if (stage.friction_schedule && std::isnan(stage.until_unbalanced))
@@ -269,7 +278,8 @@ void check_cell(const TomlReader& t, const Scene& scene) {
       if (t.has(key)) throw t.error(key, "needs a container", "set boundary.type = \"box\" or \"free\"");
     return;
   }
-  if (t.is_table("friction")) throw t.error("friction", "as a schedule needs a periodic cell", "give a number");
+  if (t.is_table("friction") && t.table("friction")->has("start"))
+    throw t.error("friction", "as a schedule needs a periodic cell", "give a number");
   for (const char* key : {"stress", "strain_rate", "hold", "cycle"})
     if (t.has(key)) throw t.error(key, "needs a periodic cell", "set boundary.type = \"periodic\"");
   const auto until = t.table("until", Need::required);
@@ -283,8 +293,8 @@ StageSpec read_stage(const TomlReader& t, const Scene& scene) {
   StageSpec stage;
   t.name("name", stage.name, Need::required);
   check_cell(t, scene);
-  if (t.is_table("friction"))
-    read_friction_schedule(*t.table("friction"), stage);
+  if (const auto friction = t.is_table("friction") ? t.table("friction") : std::nullopt)
+    friction->has("start") ? read_friction_schedule(*friction, stage) : read_material_friction(*friction, scene, stage);
   else
     t.number("friction", stage.friction, non_negative);
   t.number("radius_growth", stage.radius_growth, positive);

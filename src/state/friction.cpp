@@ -18,15 +18,20 @@ double factor_of(const FrictionScatter& s, std::uint64_t a, std::uint64_t b) {
 
 }  // namespace
 
-std::vector<double> pair_friction(const Scene& scene, std::optional<double> stage) {
+std::vector<double> pair_friction(const Scene& scene, const StageSpec& stage) {
+  const auto& materials = scene.materials;
+  auto given = stage.material_friction;
+  given.resize(materials.size());
   std::vector<double> table;
-  for (const Material& a : scene.materials)
-    for (const Material& b : scene.materials) {
-      double friction = std::min(a.friction, b.friction);
-      for (const PairSpec& p : scene.contact.pairs)
-        if ((p.first == a.name && p.second == b.name) || (p.first == b.name && p.second == a.name))
-          friction = p.friction;
-      table.push_back(stage.value_or(friction));
+  for (std::size_t k = 0; k < materials.size(); ++k)
+    for (std::size_t l = 0; l < materials.size(); ++l) {
+      const Material &a = materials[k], &b = materials[l];
+      double friction = std::min(given[k].value_or(a.friction), given[l].value_or(b.friction));
+      if (!given[k] && !given[l])
+        for (const PairSpec& p : scene.contact.pairs)
+          if ((p.first == a.name && p.second == b.name) || (p.first == b.name && p.second == a.name))
+            friction = p.friction;
+      table.push_back(stage.friction.value_or(friction));
     }
   return table;
 }
@@ -38,7 +43,8 @@ std::vector<double> friction_in_force(const Scene& scene, const State& state) {
 bool has_friction(const Scene& scene) {
   const auto positive = [](double mu) { return mu > 0; };
   return std::ranges::any_of(pair_friction(scene), positive) ||
-         std::ranges::any_of(scene.stages, [](const StageSpec& s) { return s.friction.value_or(0) > 0; });
+         std::ranges::any_of(
+             scene.stages, [&](const StageSpec& s) { return std::ranges::any_of(pair_friction(scene, s), positive); });
 }
 
 FrictionScatter friction_scatter(const Scene& scene) {

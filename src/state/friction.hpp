@@ -8,9 +8,10 @@
 
 namespace eg {
 
-/// µ of every pair of materials, row after row: that of the stage if it gives one, else of the last [[contact.pair]]
-/// for these two, else the smaller one of both materials.
-std::vector<double> pair_friction(const Scene&, std::optional<double> stage = {});
+/// µ of every pair of materials, row after row: that of the stage if it gives one for all; where it gives one for
+/// either material, the smaller one of both as they are then; else of the last [[contact.pair]] for these two, else the
+/// smaller one of both materials.
+std::vector<double> pair_friction(const Scene&, const StageSpec& stage = {});
 
 /// State::friction, or that of the scene where the state has none yet.
 std::vector<double> friction_in_force(const Scene&, const State&);

@@ -235,7 +235,8 @@ struct ShakeSpec {
 struct StageSpec {
   std::string name;
   std::optional<BondSpec> bond;
-  std::optional<double> friction;  ///< replaces every material's friction during this stage
+  std::optional<double> friction;                        ///< replaces every material's friction during this stage …
+  std::vector<std::optional<double>> material_friction;  ///< … or that of some (by their place in Scene::materials)
   std::optional<FrictionSchedule> friction_schedule;
   double radius_growth = 0;             ///< of all radii until they have the sizes of the grading [1/s]
   std::optional<double> local_damping;  ///< replaces damping.local during this stage

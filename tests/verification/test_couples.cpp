@@ -212,7 +212,11 @@ TEST(Friction, OfAPairOfMaterials) {
   scene.materials[0].name = "a", scene.materials[1].name = "b";
   scene.contact.pairs = {{"a", "b", 0.05}};
   EXPECT_EQ(pair_friction(scene), (std::vector{0.5, 0.05, 0.05, 0.5}));
-  EXPECT_EQ(pair_friction(scene, 0.2), (std::vector{0.2, 0.2, 0.2, 0.2}));
+  StageSpec stage;
+  stage.material_friction = {0.7, std::nullopt};  // of the first one only: the smaller one of both counts then
+  EXPECT_EQ(pair_friction(scene, stage), (std::vector{0.7, 0.5, 0.5, 0.5}));
+  stage.friction = 0.2;
+  EXPECT_EQ(pair_friction(scene, stage), (std::vector{0.2, 0.2, 0.2, 0.2}));
 }
 
 }  // namespace
