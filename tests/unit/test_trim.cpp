@@ -122,7 +122,7 @@ TEST(Trim, SaysWhatIsWrong) {
   EXPECT_EQ(message_of("{ box = { low = [1, 1, 1], high = [2, 0, 2] } }"),
             "a.toml:16: specimen.trim.box ends below its beginning; give ascending ends");
   EXPECT_EQ(message_of("{ cylinder = { centre = [1, 1], radius = 1, inner_radius = 1 } }"),
-            "a.toml:16: specimen.trim.cylinder.inner_radius = 1.0 leaves nothing of the cylinder; make it smaller than "
+            "a.toml:16: specimen.trim.cylinder.inner_radius = 1 leaves nothing of the cylinder; make it smaller than "
             "radius");
   EXPECT_EQ(message_of("{ box = { low = [1, 1, 1], high = [2, 2, 2] } }", "periodic"),
             "a.toml:16: specimen.trim leaves nothing that is periodic; set boundary.type to \"box\" or \"free\"");

