@@ -50,8 +50,8 @@ held_above = 0.015
 until = { time = 0.05 }
 [[stage]]
 name = "second"
-local_damping = 0.5
-until = { time = 0.1 }
+local_damping = 0.3
+until = { time = 0.3 }
 )");
   const State start = test::state_of(scene);
   std::vector<double> mass(start.grains.size() + 1);
