@@ -19,7 +19,7 @@ struct PlotFlags {
   std::vector<std::string> inputs, y, labels;
   std::string x = "time", over, figure, title;
   int stage = 0;  ///< 0: all of them
-  bool json = false, logarithmic = false;
+  bool json = false, logarithmic = false, pool = false;
 };
 
 /// The rows of one stage only.
@@ -79,14 +79,12 @@ struct Mean {
   double value = 0, scatter = 0;  ///< standard deviation of the rows
 };
 
-Mean mean_of(const std::vector<double>& values, const std::vector<bool>& chosen) {
+Mean mean_of(const std::vector<double>& values) {
   Mean m;
-  double count = 0, square = 0;
-  for (std::size_t k = 0; k < values.size(); ++k)
-    if (chosen[k]) m.value += values[k], ++count;
-  m.value /= count;
-  for (std::size_t k = 0; k < values.size(); ++k)
-    if (chosen[k]) square += (values[k] - m.value) * (values[k] - m.value);
+  const auto count = static_cast<double>(values.size());
+  double square = 0;
+  for (const double v : values) m.value += v / count;
+  for (const double v : values) square += (v - m.value) * (v - m.value);
   m.scatter = std::sqrt(square / count);
   return m;
 }
@@ -135,7 +133,26 @@ int plot_curves(const PlotFlags& flags, const std::vector<HistoryTable>& tables)
   return 0;
 }
 
-/// One row a history: means over its window with their scatter.
+struct Group {
+  std::string label;
+  std::vector<std::size_t> histories;
+};
+
+/// Each history alone, or with --pool those of one label together, in the order of their first.
+std::vector<Group> groups_of(const PlotFlags& flags) {
+  std::vector<Group> groups;
+  for (std::size_t k = 0; k < flags.inputs.size(); ++k) {
+    const std::string label = name_of(flags, k);
+    const auto same = std::ranges::find(groups, label, &Group::label);
+    if (flags.pool && same != groups.end())
+      same->histories.push_back(k);
+    else
+      groups.push_back({label, {k}});
+  }
+  return groups;
+}
+
+/// One row a group: means over the window of its histories, with their scatter.
 int plot_means(const PlotFlags& flags, const std::vector<HistoryTable>& tables) {
   const Window window = window_of(flags.over);
   std::vector<std::string> names{flags.x};
@@ -149,12 +166,20 @@ int plot_means(const PlotFlags& flags, const std::vector<HistoryTable>& tables) 
   Table report(columns);
   Series points{.line = false, .points = true};
   Series bars{.label = "± standard deviation of the rows"};
-  for (std::size_t k = 0; k < tables.size(); ++k) {
-    const auto rows = chosen_rows(tables[k], window, flags.inputs[k]);
-    std::vector<Value> row{name_of(flags, k)};
+  for (const Group& group : groups_of(flags)) {
+    std::vector<std::vector<double>> values(names.size());
+    for (const std::size_t k : group.histories) {
+      const auto rows = chosen_rows(tables[k], window, flags.inputs[k]);
+      for (std::size_t n = 0; n < names.size(); ++n) {
+        const Quantity q = quantity(tables[k], names[n], flags.inputs[k]);
+        for (std::size_t r = 0; r < rows.size(); ++r)
+          if (rows[r]) values[n].push_back(q.values[r]);
+      }
+    }
+    std::vector<Value> row{group.label};
     std::vector<Mean> means;
-    for (const auto& name : names) {
-      means.push_back(mean_of(quantity(tables[k], name, flags.inputs[k]).values, rows));
+    for (const auto& v : values) {
+      means.push_back(mean_of(v));
       row.insert(row.end(), {means.back().value, means.back().scatter});
     }
     report.add(row);
@@ -189,6 +214,7 @@ void add_plot_command(CLI::App& app, Action& action) {
   sub->add_option("--y", flags->y, "likewise; several: Y1,Y2,...")->delimiter(',')->required();
   sub->add_option("--mean-over", flags->over,
                   "COLUMN=FROM:TO: means and their scatter over these rows, one line a history");
+  sub->add_flag("--pool", flags->pool, "with --mean-over: histories of one label (their folder's name) make one line");
   sub->add_option("--stage", flags->stage, "rows of this stage only, from 1")->check(CLI::Range(1, 100000));
   sub->add_option("--label", flags->labels, "name of a history, in their order: L1,L2,... (default: its folder)")
       ->delimiter(',');

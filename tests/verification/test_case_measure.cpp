@@ -169,6 +169,17 @@ TEST_F(MeasureCommand, HistoriesArePlottedAndAveraged) {
   EXPECT_NEAR(mean[0]["deviator/mean_stress"].get<double>(), 0.3, 1e-15);
   EXPECT_NEAR(mean[0]["deviator/mean_stress_scatter"].get<double>(), 0.1, 1e-15);
   EXPECT_NEAR(mean[0]["strain_z"].get<double>(), 0.25, 1e-15);
+  std::filesystem::create_directories(folder / "again/a");
+  write_file(file("again/a/history.csv"),
+             "step [-],stage [-],strain_z [-],deviator [Pa],mean_stress [Pa]\n"
+             "1,2,0.2,60,100\n2,2,0.3,80,100\n");
+  const json pooled =
+      json::parse(output("plot " + history + " " + file("again/a/history.csv") +
+                         " --stage 2 --x strain_z --y deviator/mean_stress --json --pool --mean-over strain_z=0.15:1"),
+                  nullptr, false);
+  ASSERT_EQ(pooled.size(), 1u);
+  EXPECT_NEAR(pooled[0]["deviator/mean_stress"].get<double>(), 0.5, 1e-15);
+  EXPECT_NEAR(pooled[0]["deviator/mean_stress_scatter"].get<double>(), std::sqrt(0.05), 1e-15);
   EXPECT_NE(read_file(file("curve.svg")).find("<svg"), std::string::npos);
   EXPECT_TRUE(std::filesystem::exists(file("mean.pdf")));
 }
