@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "app/packing_input.hpp"
+#include "app/positive.hpp"
 #include "base/error.hpp"
 #include "measure/volume.hpp"
 #include "measure/zone_grid.hpp"
@@ -174,7 +175,7 @@ void add_slice_options(CLI::App& command, SliceFlags& flags) {
       ->delimiter(',');
   command.add_option("--void-map", flags.void_map, "write local void ratios, cell by cell, for ParaView (.vti)");
   command.add_option("--map-cell", flags.cell, "edge of the cells of local void ratios [m] (default: 2 d50)")
-      ->check(CLI::PositiveNumber);
+      ->check(positive);
 }
 
 const std::vector<std::string>& slice_figures() {
