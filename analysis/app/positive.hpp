@@ -15,6 +15,6 @@ inline std::string above_zero(const std::string& text) {
   return "value " + text + " must be a number above 0";
 }
 
-inline const CLI::Validator positive(above_zero, "POSITIVE");
+inline const CLI::Validator positive_option(above_zero, "POSITIVE");
 
 }  // namespace eg

@@ -175,7 +175,7 @@ void add_slice_options(CLI::App& command, SliceFlags& flags) {
       ->delimiter(',');
   command.add_option("--void-map", flags.void_map, "write local void ratios, cell by cell, for ParaView (.vti)");
   command.add_option("--map-cell", flags.cell, "edge of the cells of local void ratios [m] (default: 2 d50)")
-      ->check(positive);
+      ->check(positive_option);
 }
 
 const std::vector<std::string>& slice_figures() {

@@ -176,18 +176,18 @@ void add_waves_transmit(CLI::App& waves, Action& action) {
   auto* sub = waves.add_subcommand("transmit", "send a wave through a packing, and read speeds and response");
   auto f = std::make_shared<TransmitFlags>();
   add_packing_options(*sub, f->packing);
-  sub->add_option("--frequency", f->frequency, "of the signal [Hz]")->required()->check(positive);
+  sub->add_option("--frequency", f->frequency, "of the signal [Hz]")->required()->check(positive_option);
   sub->add_option("--signal", f->signal, "sine: one period; ricker; sweep: from --frequency to --to (default: sine)")
       ->check(CLI::IsMember({"sine", "ricker", "sweep"}));
-  sub->add_option("--to", f->last, "last frequency of a sweep [Hz]")->check(positive);
+  sub->add_option("--to", f->last, "last frequency of a sweep [Hz]")->check(positive_option);
   sub->add_option("--axis", f->axis, "along which the wave travels (default: the last one)")
       ->check(CLI::IsMember({"x", "y", "z"}));
   sub->add_option("--motion", f->motion, "of the source: along the axis a P wave (default), across it an S wave")
       ->check(CLI::IsMember({"x", "y", "z"}));
   sub->add_option("--point", f->point, "source is the grain nearest to x y z [m], not the first layer")->expected(3);
-  sub->add_option("--amplitude", f->amplitude, "of the source over the mean overlap (default: 1e-3)")->check(positive);
+  sub->add_option("--amplitude", f->amplitude, "of the source over the mean overlap (default: 1e-3)")->check(positive_option);
   sub->add_option("--duration", f->duration, "of the test [s] (default: until the waves of both ways meet)")
-      ->check(positive);
+      ->check(positive_option);
   sub->add_option("--step", f->step, "time step over the proved limit (default: 0.2)")->check(CLI::Range(1e-4, 1.0));
   sub->add_option("--damping", f->damping, "ratio of contact dashpots (default: 0)")->check(CLI::NonNegativeNumber);
   sub->add_option("--figure", f->figure, "draw the map of frequency and wave number (.svg, .png or .pdf)");
