@@ -12,6 +12,7 @@
 #include "io/snapshot.hpp"
 #include "measure/homogenised.hpp"
 #include "specimen/grading.hpp"
+#include "state/grain_mass.hpp"
 #include "support/scenes.hpp"
 #include "timestep/controller.hpp"
 
