@@ -38,4 +38,21 @@ TEST(Cavity, ReducedQuarterPeaksAndGrainsMoveOutward) {
   }
 }
 
+TEST(Cavity, OtherLawsOfTheSource) {
+  const auto law = [](const std::string& name, const std::string& sand, const std::string& wall) {
+    return "--set contact.law=" + name + " --set 'material.sand={density=2650," + sand +
+           "}' --set 'material.wall={density=2650,friction=0," + wall + "}' --set stage[3].until.displacement=4e-3 ";
+  };
+  const std::string hertz = "shear_modulus=1.5e9,poisson=0.15", linear = "effective_modulus=150e6,stiffness_ratio=4";
+  for (const std::string& settings :
+       {law("hertz-mindlin", "friction=0.55," + hertz, hertz),
+        law("linear-rolling", "friction=0.5,rolling_friction=0.1," + linear, "rolling_friction=0," + linear)}) {
+    const CaseRun run("cavity_expansion", smaller + settings);
+    ASSERT_TRUE(run.complete());
+    const auto inner = run.column("inner_stress"), outer = run.column("outer_stress");
+    EXPECT_GT(inner.back(), 2 * 500e3);
+    EXPECT_NEAR(outer.back(), 500e3, 0.02 * 500e3);
+  }
+}
+
 }  // namespace
