@@ -17,10 +17,10 @@
 namespace eg {
 namespace {
 
-constexpr std::uint64_t ahead = 64;                     // steps from one check to the next
-constexpr std::uint64_t youngest = 500, oldest = 4000;  // steps that a bound may live
-constexpr double slack = 0.1;                           // of an overlap: 5 % of the stiffness of a Hertz contact
-constexpr double least_room = 0.05, most_room = 0.25;
+constexpr std::uint64_t ahead = 64;                      // steps from one check to the next
+constexpr std::uint64_t youngest = 1000, oldest = 4000;  // steps that a bound may live
+constexpr double slack = 0.05;                           // of an overlap: 2.5 % of the stiffness of a Hertz contact
+constexpr double least_room = 0.03, most_room = 0.25;
 constexpr double gain = 1.04;  // of the step, from which on a renewal was worth its cost
 
 /// Steps to the next check: a stage that begins may set everything in motion at once.
@@ -93,8 +93,8 @@ void Controller::choose(State& state) {
 void Controller::evaluate(State& state, StepCause cause) {
   auto& plan = state.policy;
   const std::uint64_t age = state.step - plan.made;
-  if (plan.lifetime == 0) plan.lifetime = youngest, plan.room = 2 * least_room;
-  if (cause == StepCause::growth && age < youngest) plan.room = std::min(most_room, plan.room * 1.5);
+  if (plan.lifetime == 0) plan.lifetime = youngest, plan.room = 3 * least_room;
+  if (cause == StepCause::growth && age < 2 * youngest) plan.room = std::min(most_room, plan.room * 1.5);
   if (cause == StepCause::renewal && age >= 2 * youngest) plan.room = std::max(least_room, plan.room / 1.25);
 
   const double cap = free_limit(state), before = plan.safe;
@@ -107,7 +107,7 @@ void Controller::evaluate(State& state, StepCause cause) {
     plan.safe = std::min(cap, proved_damped_step(plan.bound.value, damping, step));
   };
   renew(before > 0 ? before : cap);
-  if (damping.dashpots() && std::abs(plan.safe - plan.bound.step) > 0.05 * plan.safe) renew(plan.safe);
+  if (damping.dashpots() && std::abs(plan.safe - plan.bound.step) > 0.02 * plan.safe) renew(plan.safe);
   plan.unsafe = refuted_damped_step(lower, damping, plan.bound.step);
   if (before > 0) {
     log_.worst_true = std::max(log_.worst_true, plan.dt / plan.unsafe);

@@ -8,6 +8,7 @@ namespace eg {
 namespace {
 
 constexpr double widest = 1096.6;  // e⁷: beyond it a contact is one-sided anyway
+constexpr double warm = 0.85;      // of the maximum: grains that a warm start still works on
 
 /// t ← t λ_j / λ_i
 void even_out(const Spring& s, const std::vector<double>& lambda, double& t) {
@@ -18,13 +19,14 @@ void even_out(const Spring& s, const std::vector<double>& lambda, double& t) {
 /// The contacts of hot grains, and all grains that these touch. Only grows.
 class HotSet {
  public:
-  explicit HotSet(const Sides& sides) : sides_(sides), mark_(sides.size(), 0) {}
+  /// Grains that cannot be proved below `least` are hot.
+  HotSet(const Sides& sides, double least) : sides_(sides), least_(least), mark_(sides.size(), 0) {}
 
-  /// Grains not proved below `known` are hot; looks at those listed in `from`.
-  void add(const BlockRanges& ranges, double known, const std::vector<Index>& from) {
+  /// Looks at the grains listed in `from`.
+  void add(const BlockRanges& ranges, const std::vector<Index>& from) {
     std::vector<Index> fresh;
     for (const Index g : from)
-      if (mark_[g] != hot && ranges.high[g] >= known && known > 0) fresh.push_back(g);
+      if (mark_[g] != hot && ranges.high[g] >= least_ && least_ > 0) fresh.push_back(g);
     for (const Index g : fresh) heat(g);
   }
   std::vector<Index> springs, grains;
@@ -45,6 +47,7 @@ class HotSet {
   }
 
   const Sides& sides_;
+  double least_;
   std::vector<char> mark_;
 };
 
@@ -62,7 +65,7 @@ void sweep_hot(const Sides& sides, const ScalarSweepOptions& options, HotSet& se
   for (int idle = 0;; ++weights.sweeps) {
     const double now = largest(weights.ranges.low, set.grains);
     idle = now < least * (1 - 1e-3) ? 0 : idle + 1;
-    set.add(weights.ranges, weights.known, std::vector(set.grains));
+    set.add(weights.ranges, std::vector(set.grains));
     const std::size_t kept = now < least ? 0 : best.size();
     best.resize(set.springs.size());
     for (std::size_t k = kept; k < best.size(); ++k) best[k] = weights.t[set.springs[k]];
@@ -98,16 +101,18 @@ ScalarWeights sweep_scalars(const Sides& sides, const ScalarSweepOptions& option
   const auto& springs = sides.network().springs;
   ScalarWeights weights{std::vector(springs.size(), 1.0), BlockRanges(sides.size()), 0, 0};
   const std::vector<Index> all = all_grains(sides);
-  weights.known = self_blocks(sides, all, weights.ranges);
-  if (!options.start.empty())
+  if (options.start.empty()) {
+    weights.known = self_blocks(sides, all, weights.ranges);
+    if (options.most > 0)
+      for (std::size_t c = 0; c < springs.size(); ++c)
+        if (sides.is_split(c)) even_out(springs[c], weights.ranges.low, weights.t[c]);
+    weights.sweeps = std::min(options.most, 1);
+  } else {
     weights.t.assign(options.start.begin(), options.start.end());
-  else if (options.most > 0)
-    for (std::size_t c = 0; c < springs.size(); ++c)
-      if (sides.is_split(c)) even_out(springs[c], weights.ranges.low, weights.t[c]);
+  }
   block_ranges(sides, weights.t, all, weights.ranges);
-  weights.sweeps = options.start.empty() ? std::min(options.most, 1) : 0;
-  HotSet set(sides);
-  set.add(weights.ranges, weights.known, all);
+  HotSet set(sides, options.start.empty() ? weights.known : warm * largest(weights.ranges.low, all));
+  set.add(weights.ranges, all);
   sweep_hot(sides, options, set, weights);
   return weights;
 }

@@ -10,7 +10,7 @@ namespace eg {
 struct ScalarWeights {
   std::vector<double> t;  ///< one a spring, > 0
   BlockRanges ranges;     ///< of S_i with these weights
-  double known = 0;       ///< λmax is not below: the largest eigenvalue of a self block [1/s²], rounded down
+  double known = 0;       ///< λmax is not below: the largest eigenvalue of a self block [1/s²]; 0 after a warm start
   int sweeps = 0;
 };
 
@@ -25,7 +25,8 @@ double largest_self_block(const Sides& sides);
 
 /// Improves t = 1 by sweeps t ← t λmax(S_j)/λmax(S_i), which even out the two grains of a contact. The first goes over
 /// all contacts; later ones leave out the contacts between grains already proved to be below a known lower bound of
-/// λmax. A pure function of the network; the same for any number of threads.
+/// λmax. A warm start sweeps only over what lies near the maximum. A pure function of the network; the same for any
+/// number of threads.
 ScalarWeights sweep_scalars(const Sides& sides, const ScalarSweepOptions& options);
 
 }  // namespace eg

@@ -9,7 +9,7 @@
 #include <array>
 #include <vector>
 
-#include "timestep/sides.hpp"
+#include "timestep/block_ranges.hpp"
 
 namespace eg {
 
@@ -43,5 +43,8 @@ SplittingBound splitting_bound(const Network& network, const SplittingOptions& o
                                SplittingWeights* weights = nullptr);
 SplittingBound splitting_bound(const Sides& sides, const SplittingOptions& options = {},
                                SplittingWeights* weights = nullptr);
+
+/// The bound for scalar weights `t`, one a spring, whose ranges are known.
+SplittingBound splitting_bound(const Sides& sides, const std::vector<double>& t, const BlockRanges& ranges);
 
 }  // namespace eg

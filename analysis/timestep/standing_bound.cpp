@@ -14,6 +14,7 @@ namespace eg {
 namespace {
 
 constexpr double widest = 100;          // weight
+constexpr double most_slack = 2;        // by which an overlap may grow, at most [-]
 constexpr double nearest = 0.02;        // room of a grain below the bound, as the weights see it [of the bound]
 constexpr double rounding = 1 + 1e-11;  // of sums of a few dozen positive numbers
 
@@ -47,6 +48,21 @@ OverlapForecast foreseen(const State& state, const ContactPoint& p, double time,
   f.growth += more, f.driven += more;
   return f;
 }
+/// The same with a slack that leaves the grains of the pair a tenth of the bound, if all their contacts (of Hertz) are
+/// given as much: it need not be looked at again for long. Where there is much room, a new contact may grow to what is
+/// usual.
+OverlapForecast with_room(const State& state, const ContactPoint& p, double time, double slack) {
+  const StandingBound& bound = state.policy.bound;
+  const double most = std::max(bound.grain[p.i], p.j == no_index ? 0.0 : bound.grain[p.j]);
+  const double stiffer = 0.9 * bound.value / most;
+  OverlapForecast f = foreseen(state, p, time, std::clamp(stiffer * stiffer - 1, slack, most_slack));
+  if (stiffer > 2) {
+    const double more = bound.typical_overlap - p.geometry.overlap;
+    f.growth = std::max(f.growth, more), f.driven = std::max(f.driven, more);
+  }
+  return f;
+}
+
 OverlapGrowth foreseen(const State& state, double time, double slack) {
   return [&state, time, slack](const ContactPoint& p) { return foreseen(state, p, time, slack); };
 }
@@ -69,6 +85,23 @@ std::vector<double> centre(const Sides& sides, const BlockRanges& ranges, double
     next[c] = std::sqrt(t[c] * centred_weight(most_added(net, s, s.i), room(s.i), most_added(net, s, s.j), room(s.j)));
   }
   return next;
+}
+
+double largest(const std::vector<double>& values) {
+  return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
+}
+
+/// Centred weights leave more room for pairs to come, as long as no grain passes sigma by them.
+void spread_out(const Sides& sides, double sigma, int sweeps, ScalarWeights& weights) {
+  std::vector<Index> all(sides.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    std::vector<double> t = centre(sides, weights.ranges, sigma, weights.t);
+    BlockRanges ranges(sides.size());
+    block_ranges(sides, t, all, ranges);
+    if (largest(ranges.high) > sigma) break;
+    weights.t = std::move(t), weights.ranges = std::move(ranges);
+  }
 }
 
 /// t of a pair: the one it was given, else the one that the room of its grains suggests.
@@ -111,6 +144,7 @@ void StandingBounds::remember(const State& state) {
   i_ = list.i, j_ = list.j, image_ = list.image, id_ = state.grains.id;
   walls_.clear();
   for (const auto& w : state.wall_contacts) walls_.push_back({w.wall, w.grain});
+  pair_begin_.clear();
 }
 
 double StandingBounds::renew(State& state, const RenewOptions& options) {
@@ -118,15 +152,18 @@ double StandingBounds::renew(State& state, const RenewOptions& options) {
   const auto& list = state.contacts;
   bound.step = options.step;
   damping_ = damping_in_force(scene_, state);
-  const bool warm = bound.value > 0;
-  Network network = bare_network(scene_, state);
-  std::vector<Spring> couples;  // come last
-  std::vector<double> start;
-  std::vector<std::size_t> entry;  // of each spring between grains
+  const bool warm = bound.value > 0 && follow(state);
   bound.overlap.assign(list.size(), 0.0);
   for (std::size_t c = 0; c < list.size(); ++c)
     if (list.is_padding(c)) bound.overlap[c] = INFINITY;
   bound.wall_overlap.assign(state.wall_contacts.size(), 0.0);
+  Network network = bare_network(scene_, state);
+  network.springs.reserve(list.size() + state.wall_contacts.size());
+  std::vector<Spring> couples;  // come last
+  std::vector<double> start;
+  std::vector<std::size_t> entry;  // of each spring between grains
+  double overlaps = 0;
+  std::size_t touching = 0;
   visit_contacts(
       scene_, state,
       [&](const ContactPoint& p) {
@@ -134,29 +171,25 @@ double StandingBounds::renew(State& state, const RenewOptions& options) {
         network.springs.push_back(c.contact);
         add_couple(couples, c.couple);
         (p.j == no_index ? bound.wall_overlap : bound.overlap)[p.entry] = p.reach;
+        if (p.geometry.overlap > 0) overlaps += p.geometry.overlap, ++touching;
         if (p.j != no_index) entry.push_back(p.entry);
         if (warm) start.push_back(p.j == no_index ? 1.0 : weight_of(state, p.entry, p.i, p.j));
       },
-      foreseen(state, options.time, options.slack));
+      [&](const ContactPoint& p) {
+        return warm ? with_room(state, p, options.time, options.slack)
+                    : foreseen(state, p, options.time, options.slack);
+      });
   network.springs.insert(network.springs.end(), couples.begin(), couples.end());
   if (warm) start.resize(network.springs.size(), 1.0);
+  bound.typical_overlap = touching > 0 ? overlaps / static_cast<double>(touching) : 0.0;
   bound.weight.assign(list.size(), 0.0);
 
   const Sides sides(network);
-  ScalarWeights scalars = sweep_scalars(sides, {.most = warm ? 2 : 8, .start = start});
-  double needed = *std::max_element(scalars.ranges.low.begin(), scalars.ranges.low.end());
+  ScalarWeights scalars = sweep_scalars(sides, {.most = warm ? 4 : 8, .start = start});
+  double needed = largest(scalars.ranges.low);
   bound.value = std::max(options.floor, needed * (1 + options.room));
-  std::vector<Index> all(sides.size());
-  std::iota(all.begin(), all.end(), Index{0});
-  for (int sweep = 0; sweep < 3; ++sweep) {
-    std::vector<double> t = centre(sides, scalars.ranges, bound.value, scalars.t);
-    BlockRanges ranges(sides.size());
-    block_ranges(sides, t, all, ranges);
-    if (*std::max_element(ranges.high.begin(), ranges.high.end()) > bound.value) break;
-    scalars.t = std::move(t), scalars.ranges = std::move(ranges);
-  }
-  SplittingWeights weights{scalars.t, {}, {}};
-  needed = splitting_bound(sides, {.matrix_sweeps = 0}, &weights).value;
+  spread_out(sides, bound.value, warm ? 1 : 3, scalars);
+  needed = splitting_bound(sides, scalars.t, scalars.ranges).value;
   bound.value = std::max(bound.value, needed * (1 + 0.2 * options.room));
   for (std::size_t k = 0; k < entry.size(); ++k) bound.weight[entry[k]] = scalars.t[k];
   bound.grain = std::move(scalars.ranges.high);
@@ -227,6 +260,9 @@ StandingCheck StandingBounds::check(State& state, double time, double slack) {
   const auto allowed = [&](const ContactPoint& p) -> double& {
     return (p.j == no_index ? bound.wall_overlap : bound.overlap)[p.entry];
   };
+  const OverlapGrowth as_allowed = [&](const ContactPoint& p) {
+    return OverlapForecast{allowed(p) - p.geometry.overlap};
+  };
   const auto pairs = outgrown_pairs(state, bound.overlap, time),
              walls = outgrown_walls(state, bound.wall_overlap, time);
   std::vector<ContactPoint> outgrown;  // at what they can reach
@@ -235,10 +271,7 @@ StandingCheck StandingBounds::check(State& state, double time, double slack) {
       [&](const ContactPoint& p) {
         if (p.reach > allowed(p)) outgrown.push_back(p);
       },
-      [&](const ContactPoint& p) {  // where there is much room, enough for long
-        const double most = std::max(bound.grain[p.i], p.j == no_index ? 0.0 : bound.grain[p.j]);
-        return foreseen(state, p, time, (most < 0.5 * bound.value ? 15 : 5) * slack);
-      });
+      [&](const ContactPoint& p) { return with_room(state, p, time, slack); });
   StandingCheck result;
   result.outgrown = outgrown.size();
   if (outgrown.empty()) return result;
@@ -250,7 +283,7 @@ StandingCheck StandingBounds::check(State& state, double time, double slack) {
   std::size_t k = 0;
   visit_contacts(
       scene_, state, {entries, wall_entries}, [&](const ContactPoint& p) { before[k - 1] = counted(state, p); },
-      [&](const ContactPoint& p) { return ++k, OverlapForecast{allowed(p) - p.geometry.overlap}; });
+      [&](const ContactPoint& p) { return ++k, as_allowed(p); });
   for (k = 0; k < outgrown.size(); ++k) add_excess(state, outgrown[k], before[k]);
   for (const auto& p : outgrown) allowed(p) = p.reach;
 
@@ -258,14 +291,36 @@ StandingCheck StandingBounds::check(State& state, double time, double slack) {
   doubtful_.clear();
   for (const Index i : doubtful) place_[i] = no_index;
   result.examined = doubtful.size();
-  result.stands = doubtful.empty() || examine(state, doubtful, time, slack) || examine(state, doubtful, time, 0);
+  result.stands = doubtful.empty() || examine(state, doubtful, as_allowed) ||
+                  examine(state, doubtful, foreseen(state, time, slack)) ||
+                  examine(state, doubtful, foreseen(state, time, 0));
   return result;
+}
+
+std::vector<std::size_t> StandingBounds::pairs_of(const State& state, const std::vector<Index>& grains) {
+  const auto& list = state.contacts;
+  if (pair_begin_.empty()) {
+    pair_begin_.assign(state.grains.size() + 2, 0);
+    const auto each = [&](auto visit) {
+      for (std::size_t c = 0; c < list.size(); ++c)
+        if (!list.is_padding(c)) visit(list.i[c], c), visit(list.j[c], c);
+    };
+    each([&](Index g, std::size_t) { ++pair_begin_[g + 2]; });
+    std::partial_sum(pair_begin_.begin(), pair_begin_.end(), pair_begin_.begin());
+    pair_.resize(pair_begin_.back());
+    each([&](Index g, std::size_t c) { pair_[pair_begin_[g + 1]++] = c; });
+  }
+  std::vector<std::size_t> pairs;
+  for (const Index g : grains)
+    pairs.insert(pairs.end(), pair_.begin() + pair_begin_[g], pair_.begin() + pair_begin_[g + 1]);
+  std::ranges::sort(pairs);
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
 }
 
 StandingBounds::Part StandingBounds::part(const State& state, const std::vector<Index>& grains,
                                           const OverlapGrowth& growth, bool couples) {
   const auto& g = state.grains;
-  const auto& list = state.contacts;
   place_.resize(g.size(), no_index);
   Part out;
   Network& net = out.network;
@@ -279,9 +334,7 @@ StandingBounds::Part StandingBounds::part(const State& state, const std::vector<
     return place_[i];
   };
   for (const Index i : grains) place(i);
-  for (std::size_t c = 0; c < list.size(); ++c)
-    if ((place_[list.i[c]] < grains.size() || place_[list.j[c]] < grains.size()) && !list.is_padding(c))
-      out.pairs.push_back(c);
+  out.pairs = pairs_of(state, grains);
   for (std::size_t c = 0; c < state.wall_contacts.size(); ++c)
     if (place_[state.wall_contacts[c].grain] < grains.size()) out.walls.push_back(c);
   out.pair_reach.assign(out.pairs.size(), 0.0), out.wall_reach.assign(out.walls.size(), 0.0);
@@ -311,9 +364,9 @@ StandingBounds::Part StandingBounds::part(const State& state, const std::vector<
   return out;
 }
 
-bool StandingBounds::examine(State& state, const std::vector<Index>& grains, double time, double slack) {
+bool StandingBounds::examine(State& state, const std::vector<Index>& grains, const OverlapGrowth& growth) {
   StandingBound& bound = state.policy.bound;
-  const Part stiff = part(state, grains, foreseen(state, time, slack), true);
+  const Part stiff = part(state, grains, growth, true);
   const Network& net = stiff.network;
   std::vector<double> t(net.springs.size(), 1.0);
   for (std::size_t k = 0; k < t.size(); ++k)

@@ -33,7 +33,8 @@ class StandingBounds {
 
   /// Takes note of the lists that the bound is for.
   void remember(const State& state);
-  /// A new bound, warm-started from the old one; returns a lower bound of λmax of the packing as it is [1/s²].
+  /// A new bound, warm-started from the old one if that has a meaning yet; returns a lower bound of λmax of the packing
+  /// as it is [1/s²].
   double renew(State& state, const RenewOptions& options);
   /// Carries the bound over to the present lists. False when the grains have been sorted anew: it has no meaning then.
   bool follow(State& state);
@@ -60,8 +61,10 @@ class StandingBounds {
   Part part(const State& state, const std::vector<Index>& grains, const OverlapGrowth& growth, bool couples);
   /// Adds what a pair beyond its allowance may add to λmax(S_i) of its grains.
   void add_excess(State& state, const ContactPoint& at, const Counted& before);
-  /// Works out S_i of these grains with their pairs at what they can reach, and allows them that.
-  bool examine(State& state, const std::vector<Index>& grains, double time, double slack);
+  /// Places in State::contacts of all pairs of these grains, ascending.
+  std::vector<std::size_t> pairs_of(const State& state, const std::vector<Index>& grains);
+  /// Works out S_i of these grains with their pairs grown so; if all are below the bound, allows the pairs no more.
+  bool examine(State& state, const std::vector<Index>& grains, const OverlapGrowth& growth);
 
   const Scene& scene_;
   DampingSpec damping_;
@@ -69,7 +72,9 @@ class StandingBounds {
   std::vector<std::uint8_t> image_;
   std::vector<std::array<Index, 2>> walls_;  ///< wall and grain
   std::vector<Index> doubtful_;              ///< grains that may have passed the bound
-  std::vector<Index> place_;                 ///< of a grain in a part; no_index between calls
+  std::vector<std::uint32_t> pair_begin_;    ///< pairs of a grain in pair_; empty until asked for
+  std::vector<std::size_t> pair_;
+  std::vector<Index> place_;  ///< of a grain in a part; no_index between calls
 };
 
 }  // namespace eg

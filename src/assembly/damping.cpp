@@ -27,7 +27,7 @@ Network dashpots(const Network& network, const DampingSpec& damping) {
 }
 
 Spring damped_spring(Spring spring, double inverse_mass, const DampingSpec& damping, double step) {
-  const Spring c = dashpot(spring, inverse_mass, damping);
+  const Spring c = damping.dashpots() ? dashpot(spring, inverse_mass, damping) : Spring{};
   spring.normal = (1 + damping.local) * (spring.normal + 2 * c.normal / step);
   spring.tangential = (1 + damping.local) * (spring.tangential + 2 * c.tangential / step);
   return spring;

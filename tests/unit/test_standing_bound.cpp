@@ -29,9 +29,10 @@ void list_with_history(State& state, const Scene& scene) {
   if (scene.contact.law == "linear-parallel-bond") engine.bond({.gap = 1e-5});
 }
 
-/// Every grain moves at random, by some `size` [m].
-void shake(State& state, double size, Random& random) {
-  for (auto& p : state.grains.position) p.set(p.vec() + Vec3{random.normal(), random.normal(), random.normal()} * size);
+/// All draw together or apart by up to two per cent: overlaps change, each by its own share, new contacts come,
+/// and no direction turns (turning is what a bound does not count).
+void breathe(State& state, double factor) {
+  for (auto& p : state.grains.position) p.set(p.vec() * factor);
 }
 
 class StandingBoundOf : public ::testing::TestWithParam<std::string> {};
@@ -39,11 +40,8 @@ class StandingBoundOf : public ::testing::TestWithParam<std::string> {};
 TEST_P(StandingBoundOf, HoldsTheExactValueWheneverItStands) {
   Scene scene = test::scene_of(GetParam());
   scene.materials[0].bond_modulus = 5e9;  // couples that matter
-  // Directions count as they were: laws whose stiffness does not depend on the overlap are shaken so little that what
-  // matters are contacts that come and go.
-  const double size = scene.contact.law == "hertz-mindlin" ? 1e-5 : 1e-6;
-  int stood = 0, fell = 0, beyond = 0;
-  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+  int stood = 0, fell = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     State state = touching_cluster(scene, seed);
     list_with_history(state, scene);
     if (linearise(scene, state).springs.empty()) continue;
@@ -53,29 +51,43 @@ TEST_P(StandingBoundOf, HoldsTheExactValueWheneverItStands) {
     EXPECT_LE(lower, exact(scene, state) * (1 + 1e-12));
     EXPECT_GE(state.policy.bound.value, exact(scene, state));
     for (int k = 0; k < 25; ++k) {
-      shake(state, size * (1 + k), random);
+      breathe(state, 1 + 0.03 * (random.uniform() - 0.65));
       refresh_contacts(state);
       ASSERT_TRUE(bounds.follow(state));
       const double now = exact(scene, state);
-      beyond += now > state.policy.bound.value;
       if (bounds.check(state, 0, 0.1).stands) {
         ++stood;
-        EXPECT_LE(now, state.policy.bound.value * (1 + 1e-12)) << "seed " << seed << ", shake " << k;
+        EXPECT_LE(now, state.policy.bound.value * (1 + 1e-12)) << "seed " << seed << ", breath " << k;
       } else {
         ++fell;
         bounds.renew(state, {.time = 0, .slack = 0.1, .room = 0.15, .floor = 0, .step = 1});
       }
     }
   }
-  EXPECT_GT(stood, 200);
-  EXPECT_GT(fell, scene.contact.law == "hertz-mindlin" ? 10 : 1);
-  const int least = scene.contact.law == "hertz-mindlin" ? 5 : -1;
-  EXPECT_GT(beyond, least);  // the shaking does pass the bound now and then
+  EXPECT_GT(stood, 100);
+  EXPECT_GT(fell, 5);
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, StandingBoundOf,
                          ::testing::Values("hertz-mindlin", "linear-rolling", "linear-parallel-bond"),
                          [](const auto& info) { return std::string(info.param).substr(info.param.find('-') + 1, 4); });
+
+TEST(StandingBound, FallsWhenThePackingHasPassedIt) {
+  const Scene scene = test::scene_of("hertz-mindlin");
+  int beyond = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    State state = touching_cluster(scene, seed);
+    StandingBounds bounds(scene);
+    bounds.renew(state, {.time = 0, .slack = 0.1, .room = 0.05, .floor = 0, .step = 1});
+    breathe(state, 0.8);
+    refresh_contacts(state);
+    ASSERT_TRUE(bounds.follow(state));
+    if (exact(scene, state) <= state.policy.bound.value) continue;
+    ++beyond;
+    EXPECT_FALSE(bounds.check(state, 0, 0.1).stands) << "seed " << seed;
+  }
+  EXPECT_GT(beyond, 3);
+}
 
 TEST(StandingBound, ForeseesCollisions) {
   const Scene scene = test::scene_of("hertz-mindlin");
