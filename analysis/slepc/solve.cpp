@@ -89,25 +89,6 @@ SlepcResult general_end(::Mat matrix, EPSWhich end, const SlepcOptions& options)
   return solve(eps);
 }
 
-SlepcResult general_nearest(::Mat matrix, double target, const SlepcOptions& options) {
-  MatHandle points;  // MUMPS wants its matrix without blocks
-  check_slepc(MatConvert(matrix, MATAIJ, MAT_INITIAL_MATRIX, points.out()));
-  const EpsHandle eps = make_solver(points, EPS_NHEP, options);
-  check_slepc(EPSSetTarget(eps, target));
-  check_slepc(EPSSetWhichEigenpairs(eps, EPS_TARGET_MAGNITUDE));
-  ST st = nullptr;
-  KSP ksp = nullptr;
-  PC pc = nullptr;
-  check_slepc(EPSGetST(eps, &st));
-  check_slepc(STSetType(st, STSINVERT));
-  check_slepc(STGetKSP(st, &ksp));
-  check_slepc(KSPSetType(ksp, KSPPREONLY));
-  check_slepc(KSPGetPC(ksp, &pc));
-  check_slepc(PCSetType(pc, PCLU));
-  check_slepc(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  return solve(eps);
-}
-
 SlepcResult quadratic_limit(::Mat k, ::Mat c, const SlepcOptions& options) {
   MatHandle a0, a1, a2;
   check_slepc(MatDuplicate(k, MAT_COPY_VALUES, a0.out()));

@@ -32,9 +32,6 @@ SlepcResult largest_symmetric(::Mat matrix, const SlepcOptions& options = {});
 /// when none converged.
 SlepcResult general_end(::Mat matrix, EPSWhich end, const SlepcOptions& options);
 
-/// Eigenvalues of a general real matrix nearest to a number inside the spectrum, by shift and invert (MUMPS).
-SlepcResult general_nearest(::Mat matrix, double target, const SlepcOptions& options);
-
 /// Largest s of (4s² − 2s C − K) x = 0, K and C symmetric and mass-scaled: the damped limit is Δt = 1/s. By the
 /// two-level orthogonal Arnoldi method (Lu, Su and Bai 2016; Campos and Roman 2016). Throws RunError when nothing
 /// converged.

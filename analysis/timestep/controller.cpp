@@ -17,7 +17,7 @@
 namespace eg {
 namespace {
 
-constexpr std::uint64_t ahead = 64;                      // steps from one check to the next
+constexpr std::uint64_t ahead = 128;                     // steps from one check to the next
 constexpr std::uint64_t youngest = 1000, oldest = 4000;  // steps that a bound may live
 constexpr double slack = 0.05;                           // of an overlap: 2.5 % of the stiffness of a Hertz contact
 constexpr double least_room = 0.03, most_room = 0.25;

@@ -49,18 +49,12 @@ OverlapForecast foreseen(const State& state, const ContactPoint& p, double time,
   return f;
 }
 /// The same with a slack that leaves the grains of the pair a tenth of the bound, if all their contacts (of Hertz) are
-/// given as much: it need not be looked at again for long. Where there is much room, a new contact may grow to what is
-/// usual.
+/// given as much: it need not be looked at again for long.
 OverlapForecast with_room(const State& state, const ContactPoint& p, double time, double slack) {
   const StandingBound& bound = state.policy.bound;
   const double most = std::max(bound.grain[p.i], p.j == no_index ? 0.0 : bound.grain[p.j]);
   const double stiffer = 0.9 * bound.value / most;
-  OverlapForecast f = foreseen(state, p, time, std::clamp(stiffer * stiffer - 1, slack, most_slack));
-  if (stiffer > 2) {
-    const double more = bound.typical_overlap - p.geometry.overlap;
-    f.growth = std::max(f.growth, more), f.driven = std::max(f.driven, more);
-  }
-  return f;
+  return foreseen(state, p, time, std::clamp(stiffer * stiffer - 1, slack, most_slack));
 }
 
 OverlapGrowth foreseen(const State& state, double time, double slack) {
@@ -162,8 +156,6 @@ double StandingBounds::renew(State& state, const RenewOptions& options) {
   std::vector<Spring> couples;  // come last
   std::vector<double> start;
   std::vector<std::size_t> entry;  // of each spring between grains
-  double overlaps = 0;
-  std::size_t touching = 0;
   visit_contacts(
       scene_, state,
       [&](const ContactPoint& p) {
@@ -171,7 +163,6 @@ double StandingBounds::renew(State& state, const RenewOptions& options) {
         network.springs.push_back(c.contact);
         add_couple(couples, c.couple);
         (p.j == no_index ? bound.wall_overlap : bound.overlap)[p.entry] = p.reach;
-        if (p.geometry.overlap > 0) overlaps += p.geometry.overlap, ++touching;
         if (p.j != no_index) entry.push_back(p.entry);
         if (warm) start.push_back(p.j == no_index ? 1.0 : weight_of(state, p.entry, p.i, p.j));
       },
@@ -181,7 +172,6 @@ double StandingBounds::renew(State& state, const RenewOptions& options) {
       });
   network.springs.insert(network.springs.end(), couples.begin(), couples.end());
   if (warm) start.resize(network.springs.size(), 1.0);
-  bound.typical_overlap = touching > 0 ? overlaps / static_cast<double>(touching) : 0.0;
   bound.weight.assign(list.size(), 0.0);
 
   const Sides sides(network);

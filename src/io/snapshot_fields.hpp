@@ -215,13 +215,12 @@ void visit_plan(Archive& a, P& plan) {
   a.value("policy/lifetime", "-", lifetime);
   a.value("policy/room", "-", room);
   a.value("policy/refreshes", "-", refreshes);
-  auto& [value, step, overlap, weight, wall_overlap, typical_overlap, grain] = bound;
+  auto& [value, step, overlap, weight, wall_overlap, grain] = bound;
   a.value("policy/bound", "1/s^2", value);
   a.value("policy/bound_step", "s", step);
   a.array("policy/allowed_overlap", "m", overlap);
   a.array("policy/weight", "-", weight);
   a.array("policy/wall_allowed_overlap", "m", wall_overlap);
-  a.value("policy/typical_overlap", "m", typical_overlap);
   a.array("policy/grain_bound", "1/s^2", grain);
 }
 

@@ -87,8 +87,7 @@ struct StandingBound {
   std::vector<double> overlap;  ///< up to which a pair is counted [m]; 0: not at all, infinite for padding
   std::vector<double> weight;   ///< t of the pair, 0 where it was not counted
   std::vector<double> wall_overlap;
-  double typical_overlap = 0;  ///< of the contacts when the bound was made [m]
-  std::vector<double> grain;   ///< bound of λmax(S_i) of every grain with all pairs at what they are allowed [1/s²]
+  std::vector<double> grain;  ///< bound of λmax(S_i) of every grain with all pairs at what they are allowed [1/s²]
 };
 
 /// What the step policy has planned; part of the state so that a resumed run goes on alike.
