@@ -17,14 +17,14 @@
 namespace eg {
 namespace {
 
-constexpr std::uint64_t ahead = 128;                     // steps from one check to the next
-constexpr std::uint64_t youngest = 1000, oldest = 4000;  // steps that a bound may live
+constexpr std::uint64_t nearest = 4, furthest = 256;      // steps from one check to the next
+constexpr std::uint64_t youngest = 1000, oldest = 16000;  // steps that a bound may live
 constexpr double slack = 0.05;                           // of an overlap: 2.5 % of the stiffness of a Hertz contact
 constexpr double least_room = 0.03, most_room = 0.25;
 constexpr double gain = 1.04;  // of the step, from which on a renewal was worth its cost
 
-/// Steps to the next check: a stage that begins may set everything in motion at once.
-std::uint64_t look_ahead(const State& state) { return std::clamp<std::uint64_t>(state.stage_step, 4, ahead); }
+/// Steps to the next check.
+std::uint64_t look_ahead(const State& state) { return std::clamp(state.policy.ahead, nearest, furthest); }
 
 /// The safety factor times the named rule.
 double estimated_step(const Scene& scene, const Network& net, const std::string& name) {
@@ -134,8 +134,14 @@ bool Controller::still_stands(State& state) {
   const auto result = bounds_.check(state, static_cast<double>(look_ahead(state)) * plan.dt, slack);
   ++log_.checks;
   log_.examined += result.examined;
-  plan.check = state.step + look_ahead(state);
   log_.outgrown += result.outgrown;
+  // A stage that begins may set everything in motion at once, and so may collisions.
+  plan.ahead = look_ahead(state);
+  if (result.outrun)
+    plan.ahead /= 4;
+  else if (state.step >= plan.check)
+    plan.ahead += plan.ahead / 4;
+  plan.check = state.step + look_ahead(state);
   return result.stands;
 }
 

@@ -24,8 +24,22 @@ Mat3 closing_gradient(const State& state) {
 
 using Shifts = std::array<Quad, Cell::images>;
 
-void add_outgrown(const State& state, const Shifts& shift, const Mat<Batch>& rate, std::span<const double> allowed,
-                  double time, std::size_t c, std::vector<std::size_t>& found) {
+constexpr std::size_t lanes = Contacts::lanes;
+
+/// Places of the components of a direction.
+std::size_t place(std::size_t entry, std::size_t component) {
+  return (entry / lanes * 3 + component) * lanes + entry % lanes;
+}
+
+/// The smaller leave of the two grains.
+EG_INLINE Batch least_of(std::span<const double> grains, const Index* i, const Index* j) {
+  Batch least;
+  for (std::size_t k = 0; k < lanes; ++k) least.v[k] = std::min(grains[i[k]], grains[j[k]]);
+  return least;
+}
+
+void add_outgrown(const State& state, const Shifts& shift, const Mat<Batch>& rate, const Leave& leave, double time,
+                  std::size_t c, std::vector<std::size_t>& found) {
   const auto& list = state.contacts;
   const Index *i = list.i.data() + c, *j = list.j.data() + c;
   BothSides<Batch> both;
@@ -34,11 +48,18 @@ void add_outgrown(const State& state, const Shifts& shift, const Mat<Batch>& rat
   const Vec<Batch> branch = xyz(both.branch);
   const Batch d2 = max(dot(branch, branch), Batch(1e-300)), inverse = rsqrt(d2);
   const Vec<Batch> velocity = xyz(both.velocity) + rate * branch;
-  const Batch speed = max(-dot(velocity, branch) * inverse, Batch(0.0));
-  const Batch overlap = both.branch.w - d2 * inverse + speed * Batch(closing_margin * time);
-  const Mask over = overlap > max(load_lanes(allowed.data() + c), Batch(0.0));
+  const Vec<Batch> n = branch * inverse;
+  const Batch opening = dot(velocity, n), ahead = Batch(closing_margin * time);
+  const Batch overlap = both.branch.w - d2 * inverse + max(-opening, Batch(0.0)) * ahead;
+  const float* from = leave.bound.direction.data() + place(c, 0);
+  const Vec<Batch> counted{load_lanes(from), load_lanes(from + lanes), load_lanes(from + 2 * lanes)}, off = n - counted;
+  // (a + b)² ≤ 2 (a² + b²), a how far it is off already, b how far it may yet turn
+  const Batch onwards = max(dot(velocity, velocity) - opening * opening, Batch(0.0)) * (ahead * ahead * inverse * inverse);
+  const Batch turn = least_of(leave.turn, list.i.data() + c, list.j.data() + c);
+  const Mask over = (overlap > max(load_lanes(leave.bound.overlap.data() + c), Batch(0.0))) |
+                    ((dot(counted, counted) > Batch(0.5)) & ((dot(off, off) + onwards) * Batch(2.0) > turn * turn));
   if (!any(over)) return;
-  for (std::size_t k = 0; k < Batch::lanes; ++k)
+  for (std::size_t k = 0; k < lanes; ++k)
     if (lane(over, k)) found.push_back(c + k);
 }
 
@@ -62,7 +83,25 @@ OverlapForecast forecast(const State& state, Index i, Index j, const Geometry<do
           std::min(speed, driven) * time};
 }
 
-std::vector<std::size_t> outgrown_pairs(const State& state, std::span<const double> allowed, double time) {
+Vec3 counted_direction(const StandingBound& bound, std::size_t entry) {
+  return {bound.direction[place(entry, 0)], bound.direction[place(entry, 1)], bound.direction[place(entry, 2)]};
+}
+void set_direction(StandingBound& bound, std::size_t entry, const Vec3& n) {
+  for (std::size_t k = 0; k < 3; ++k) bound.direction[place(entry, k)] = static_cast<float>(n[static_cast<int>(k)]);
+}
+
+double turn_forecast(const State& state, const ContactPoint& p, double time) {
+  const auto& velocity = state.grains.velocity;
+  if (p.j != no_index) {
+    const Vec3 v = velocity[p.j].vec() - velocity[p.i].vec() + state.cell.rate * p.branch;
+    return closing_margin * norm(v - p.geometry.n * dot(v, p.geometry.n)) * time / norm(p.branch);
+  }
+  const Wall& wall = state.walls[p.wall];
+  if (wall.shape == Wall::plane && !wall.windowed()) return 0;
+  return closing_margin * (norm(velocity[p.i].vec()) + fastest_wall(state)) * time / state.grains.radius(p.i);
+}
+
+std::vector<std::size_t> outgrown_pairs(const State& state, const Leave& leave, double time) {
   const auto& list = state.contacts;
   if (list.size() == 0) return {};
   Shifts shift;
@@ -75,19 +114,24 @@ std::vector<std::size_t> outgrown_pairs(const State& state, std::span<const doub
 #pragma omp parallel for schedule(static) if (chunks >= Contacts::worth_threads)
   for (std::size_t k = 0; k < chunks; ++k)
     for (std::size_t c = list.chunk_begin[k]; c < list.chunk_begin[k + 1]; c += Contacts::lanes)
-      add_outgrown(state, shift, rate, allowed, time, c, found[k]);
+      add_outgrown(state, shift, rate, leave, time, c, found[k]);
   for (std::size_t k = 1; k < chunks; ++k) found[0].insert(found[0].end(), found[k].begin(), found[k].end());
   return std::move(found[0]);
 }
 
-std::vector<std::size_t> outgrown_walls(const State& state, std::span<const double> allowed, double time) {
+std::vector<std::size_t> outgrown_walls(const State& state, const Leave& leave, double time) {
   std::vector<std::size_t> found;
   for (std::size_t c = 0; c < state.wall_contacts.size(); ++c) {
     const auto& contact = state.wall_contacts[c];
     const Wall& wall = state.walls[contact.wall];
     const Quad& p = state.grains.position[contact.grain];
     const auto g = grain_surface(state, wall, p.vec(), p.w, Arms::surface);  // it may come into the window
-    if (g.overlap + forecast(state, contact.grain, no_index, g, time).growth > allowed[c]) found.push_back(c);
+    const Vec3 n = grain_wall(state, wall, p.vec(), p.w, Arms::surface).n, counted = leave.bound.wall_direction[c];
+    ContactPoint at;
+    at.i = contact.grain, at.j = no_index, at.wall = contact.wall;
+    const bool turned = norm(counted) > 0 && norm(n - counted) + turn_forecast(state, at, time) > leave.turn[at.i];
+    if (turned || g.overlap + forecast(state, contact.grain, no_index, g, time).growth > leave.bound.wall_overlap[c])
+      found.push_back(c);
   }
   return found;
 }

@@ -2,11 +2,11 @@
 // A bound of λmax that stands while the packing moves on, and the check that it still does.
 //
 // A renewal bounds the S_i of contact splitting with every pair at the overlap that it is allowed, somewhat more than
-// it has. A check looks at all listed pairs at the overlap that they can reach until the next one. Pairs within what
-// they are allowed change nothing. Each of the others adds at most (1 + t^±1) max(Δkn/m, Δkt (1/m + R²/I)) to λmax(S_i)
-// of its grains (Weyl 1912); a grain whose sum does not fit below the bound is worked out afresh. A spring of couples
-// is counted as one of twice its stiffness against the ground on each of its grains, which is not less. Proof:
-// certificates.md.
+// it has. A check looks at all listed pairs at the overlap and the direction that they can reach until the next one.
+// Pairs within what they are allowed change nothing. Each of the others adds at most
+// (1 + t^±1) max(Δkn/m, Δkt (1/m + R²/I)) to λmax(S_i) of its grains (Weyl 1912), and something for its turn; a grain
+// whose sum does not fit below the bound is worked out afresh. A spring of couples is counted as one of twice its
+// stiffness against the ground on each of its grains, which is not less. Proof: certificates.md.
 #include "assembly/damping.hpp"
 #include "state/gather.hpp"
 
@@ -22,8 +22,16 @@ struct RenewOptions {
 
 struct StandingCheck {
   bool stands = true;
-  std::size_t outgrown = 0;  ///< contacts beyond what they are allowed
+  std::size_t outgrown = 0;  ///< contacts beyond what they are allowed, in overlap or direction
   std::size_t examined = 0;  ///< grains worked out afresh
+  bool outrun = false;       ///< a contact had gone beyond what it was allowed already, and its grain may have had no room
+};
+
+/// How a spring that is counted may move.
+struct SpringMotion {
+  double reach = 0;    ///< overlap that it is allowed [m]
+  double turned = 0;   ///< |n − n₀|, n₀ the direction that it was counted with
+  double turning = 0;  ///< how much n may change until the next check
 };
 
 /// Keeps state.policy.bound, which is all that it remembers but for scratch and the keys of the lists.
@@ -43,35 +51,51 @@ class StandingBounds {
   StandingCheck check(State& state, double time, double slack);
 
  private:
+  /// The springs of a contact as the damped network has them.
+  struct Counted {
+    Spring contact;
+    Spring couple;     ///< of twice the stiffness; nothing where the contact has none
+    double reach = 0;  ///< overlap that they belong to [m]
+  };
+  /// A contact that may be beyond what it is allowed.
+  struct Beyond {
+    ContactPoint at;
+    double turned = 0, turning = 0;  ///< |n − n₀| now, and how much may come to it until the next check
+    bool outran = false;             ///< it is beyond it already
+    Counted before;                  ///< at what it was allowed
+  };
   struct Part {
     Network network;                 ///< some grains, numbered afresh, first those asked for; then their neighbours
     std::vector<std::size_t> entry;  ///< of each spring in State::contacts; no_entry for a wall
     std::vector<std::size_t> pairs, walls;       ///< all listed contacts of the grains asked for …
     std::vector<double> pair_reach, wall_reach;  ///< … and the overlap they were counted at [m], 0 when not at all
+    std::vector<SpringMotion> met;  ///< of each spring
   };
   static constexpr std::size_t no_entry = ~std::size_t{0};
 
-  /// The springs of a contact as the damped network has them.
-  struct Counted {
-    Spring contact;
-    Spring couple;  ///< of twice the stiffness; nothing where the contact has none
-  };
   Counted counted(const State& state, const ContactPoint& contact) const;
-  /// `couples`: whether to count them; without, λmax of the part is no upper bound.
-  Part part(const State& state, const std::vector<Index>& grains, const OverlapGrowth& growth, bool couples);
-  /// Adds what a pair beyond its allowance may add to λmax(S_i) of its grains.
-  void add_excess(State& state, const ContactPoint& at, const Counted& before);
+  static double turned(const State& state, const ContactPoint& contact);
+  /// `time`: until the next check [s]; `couples`: whether to count them: without, λmax of the part is no upper bound.
+  Part part(const State& state, const std::vector<Index>& grains, const OverlapGrowth& growth, double time,
+            bool couples);
+  /// Contacts that may pass what they are allowed within that time, at what they are to be allowed.
+  std::vector<Beyond> beyond(const State& state, double time, double slack);
+  /// Adds what such a contact may add to λmax(S_i) of its grains.
+  void add_excess(State& state, const Beyond& contact);
   /// Places in State::contacts of all pairs of these grains, ascending.
   std::vector<std::size_t> pairs_of(const State& state, const std::vector<Index>& grains);
-  /// Works out S_i of these grains with their pairs grown so; if all are below the bound, allows the pairs no more.
-  bool examine(State& state, const std::vector<Index>& grains, const OverlapGrowth& growth);
+  /// Works out S_i of these grains with their pairs grown so; if all stay below the bound for that time, allows the
+  /// pairs no more.
+  bool examine(State& state, const std::vector<Index>& grains, const OverlapGrowth& growth, double time);
 
   const Scene& scene_;
   DampingSpec damping_;
   std::vector<Index> i_, j_, id_;
   std::vector<std::uint8_t> image_;
   std::vector<std::array<Index, 2>> walls_;  ///< wall and grain
+  std::vector<double> turn_;                 ///< leave of each grain in the check under way
   std::vector<Index> doubtful_;              ///< grains that may have passed the bound
+  bool outrun_ = false;                      ///< some of them before the check
   std::vector<std::uint32_t> pair_begin_;    ///< pairs of a grain in pair_; empty until asked for
   std::vector<std::size_t> pair_;
   std::vector<Index> place_;  ///< of a grain in a part; no_index between calls

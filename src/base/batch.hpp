@@ -129,6 +129,11 @@ EG_INLINE Batch load_lanes(const double* p) {
   __builtin_memcpy(&b.v, p, 64);
   return b;
 }
+EG_INLINE Batch load_lanes(const float* p) {
+  float __attribute__((vector_size(32))) f;
+  __builtin_memcpy(&f, p, 32);
+  return __builtin_convertvector(f, Double8);
+}
 EG_INLINE void store_lanes(double* p, Batch b) { __builtin_memcpy(p, &b.v, 64); }
 
 /// Rows of eight grains as columns: out[c] holds component c of lanes 0…7.

@@ -17,6 +17,10 @@ Hdf5Id hdf5_type<double>() {
   return H5T_IEEE_F64LE;
 }
 template <>
+Hdf5Id hdf5_type<float>() {
+  return H5T_IEEE_F32LE;
+}
+template <>
 Hdf5Id hdf5_type<int>() {
   return H5T_STD_I32LE;
 }

@@ -204,7 +204,7 @@ void visit_ledger(Archive& a, L& ledger) {
 
 template <class Archive, class P>
 void visit_plan(Archive& a, P& plan) {
-  auto& [dt, safe, unsafe, cause, made, due, check, lifetime, room, refreshes, bound] = plan;
+  auto& [dt, safe, unsafe, cause, made, due, check, ahead, lifetime, room, refreshes, bound] = plan;
   a.value("policy/dt", "s", dt);
   a.value("policy/safe", "s", safe);
   a.value("policy/unsafe", "s", unsafe);
@@ -212,16 +212,20 @@ void visit_plan(Archive& a, P& plan) {
   a.value("policy/made", "-", made);
   a.value("policy/due", "-", due);
   a.value("policy/check", "-", check);
+  a.value("policy/ahead", "-", ahead);
   a.value("policy/lifetime", "-", lifetime);
   a.value("policy/room", "-", room);
   a.value("policy/refreshes", "-", refreshes);
-  auto& [value, step, overlap, weight, wall_overlap, grain] = bound;
+  auto& [value, step, overlap, weight, wall_overlap, direction, wall_direction, grain, turning] = bound;
   a.value("policy/bound", "1/s^2", value);
   a.value("policy/bound_step", "s", step);
   a.array("policy/allowed_overlap", "m", overlap);
   a.array("policy/weight", "-", weight);
   a.array("policy/wall_allowed_overlap", "m", wall_overlap);
+  a.array("policy/direction", "-", direction);
+  a.array("policy/wall_direction", "-", wall_direction);
   a.array("policy/grain_bound", "1/s^2", grain);
+  a.array("policy/turning", "1/s^2", turning);
 }
 
 template <class Archive, class F>

@@ -87,7 +87,10 @@ struct StandingBound {
   std::vector<double> overlap;  ///< up to which a pair is counted [m]; 0: not at all, infinite for padding
   std::vector<double> weight;   ///< t of the pair, 0 where it was not counted
   std::vector<double> wall_overlap;
-  std::vector<double> grain;  ///< bound of λmax(S_i) of every grain with all pairs at what they are allowed [1/s²]
+  std::vector<float> direction;      ///< n of the pair as it was counted, blocks [component][lane]; 0: not counted
+  std::vector<Vec3> wall_direction;  ///< n of a wall contact as it was counted; 0: not counted
+  std::vector<double> grain;    ///< bound of λmax(S_i) of every grain with all pairs at what they are allowed [1/s²]
+  std::vector<double> turning;  ///< what it grows by for every unit by which directions of its contacts are off [1/s²]
 };
 
 /// What the step policy has planned; part of the state so that a resumed run goes on alike.
@@ -99,6 +102,7 @@ struct StepPlan {
   std::uint64_t made = 0;       ///< step of the last evaluation
   std::uint64_t due = 0;        ///< step of the next evaluation at the latest
   std::uint64_t check = 0;      ///< step of the next check that the bound still stands
+  std::uint64_t ahead = 0;      ///< steps from one check to the next, at most
   std::uint64_t lifetime = 0;   ///< steps between evaluations when nothing happens
   double room = 0;              ///< how much larger than need be the bound was chosen [-]
   std::uint64_t refreshes = 0;  ///< of the lists that the bound is for

@@ -29,10 +29,9 @@ void list_with_history(State& state, const Scene& scene) {
   if (scene.contact.law == "linear-parallel-bond") engine.bond({.gap = 1e-5});
 }
 
-/// All draw together or apart by up to two per cent: overlaps change, each by its own share, new contacts come,
-/// and no direction turns (turning is what a bound does not count).
-void breathe(State& state, double factor) {
-  for (auto& p : state.grains.position) p.set(p.vec() * factor);
+/// Every grain moves at random, by some `size` [m].
+void shake(State& state, double size, Random& random) {
+  for (auto& p : state.grains.position) p.set(p.vec() + Vec3{random.normal(), random.normal(), random.normal()} * size);
 }
 
 class StandingBoundOf : public ::testing::TestWithParam<std::string> {};
@@ -40,8 +39,10 @@ class StandingBoundOf : public ::testing::TestWithParam<std::string> {};
 TEST_P(StandingBoundOf, HoldsTheExactValueWheneverItStands) {
   Scene scene = test::scene_of(GetParam());
   scene.materials[0].bond_modulus = 5e9;  // couples that matter
-  int stood = 0, fell = 0;
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+  // Up to a quarter of a radius: contacts come, go, grow and turn. Bonds would break: they part by a fortieth.
+  const double size = scene.contact.law == "linear-parallel-bond" ? 1e-6 : 1e-5;
+  int stood = 0, fell = 0, beyond = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     State state = touching_cluster(scene, seed);
     list_with_history(state, scene);
     if (linearise(scene, state).springs.empty()) continue;
@@ -51,43 +52,29 @@ TEST_P(StandingBoundOf, HoldsTheExactValueWheneverItStands) {
     EXPECT_LE(lower, exact(scene, state) * (1 + 1e-12));
     EXPECT_GE(state.policy.bound.value, exact(scene, state));
     for (int k = 0; k < 25; ++k) {
-      breathe(state, 1 + 0.03 * (random.uniform() - 0.65));
+      shake(state, size * (1 + k), random);
       refresh_contacts(state);
       ASSERT_TRUE(bounds.follow(state));
       const double now = exact(scene, state);
+      beyond += now > state.policy.bound.value;
       if (bounds.check(state, 0, 0.1).stands) {
         ++stood;
-        EXPECT_LE(now, state.policy.bound.value * (1 + 1e-12)) << "seed " << seed << ", breath " << k;
+        EXPECT_LE(now, state.policy.bound.value * (1 + 1e-12)) << "seed " << seed << ", shake " << k;
       } else {
         ++fell;
         bounds.renew(state, {.time = 0, .slack = 0.1, .room = 0.15, .floor = 0, .step = 1});
       }
     }
   }
-  EXPECT_GT(stood, 100);
-  EXPECT_GT(fell, 5);
+  EXPECT_GT(stood, 200);
+  EXPECT_GT(fell, scene.contact.law == "hertz-mindlin" ? 10 : 1);
+  const int least = scene.contact.law == "hertz-mindlin" ? 5 : -1;
+  EXPECT_GT(beyond, least);  // the shaking does pass the bound now and then
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, StandingBoundOf,
                          ::testing::Values("hertz-mindlin", "linear-rolling", "linear-parallel-bond"),
                          [](const auto& info) { return std::string(info.param).substr(info.param.find('-') + 1, 4); });
-
-TEST(StandingBound, FallsWhenThePackingHasPassedIt) {
-  const Scene scene = test::scene_of("hertz-mindlin");
-  int beyond = 0;
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    State state = touching_cluster(scene, seed);
-    StandingBounds bounds(scene);
-    bounds.renew(state, {.time = 0, .slack = 0.1, .room = 0.05, .floor = 0, .step = 1});
-    breathe(state, 0.8);
-    refresh_contacts(state);
-    ASSERT_TRUE(bounds.follow(state));
-    if (exact(scene, state) <= state.policy.bound.value) continue;
-    ++beyond;
-    EXPECT_FALSE(bounds.check(state, 0, 0.1).stands) << "seed " << seed;
-  }
-  EXPECT_GT(beyond, 3);
-}
 
 TEST(StandingBound, ForeseesCollisions) {
   const Scene scene = test::scene_of("hertz-mindlin");
