@@ -17,10 +17,10 @@
 namespace eg {
 namespace {
 
-constexpr std::uint64_t nearest = 4, furthest = 256;      // steps from one check to the next
+constexpr std::uint64_t nearest = 4, furthest = 512;      // steps from one check to the next
 constexpr std::uint64_t youngest = 1000, oldest = 16000;  // steps that a bound may live
 constexpr double slack = 0.05;                           // of an overlap: 2.5 % of the stiffness of a Hertz contact
-constexpr double least_room = 0.03, most_room = 0.25;
+constexpr double least_room = 0.08, most_room = 0.35;
 constexpr double gain = 1.04;  // of the step, from which on a renewal was worth its cost
 
 /// Steps to the next check.
@@ -93,7 +93,7 @@ void Controller::choose(State& state) {
 void Controller::evaluate(State& state, StepCause cause) {
   auto& plan = state.policy;
   const std::uint64_t age = state.step - plan.made;
-  if (plan.lifetime == 0) plan.lifetime = youngest, plan.room = 3 * least_room;
+  if (plan.lifetime == 0) plan.lifetime = youngest, plan.room = 2 * least_room;
   if (cause == StepCause::growth && age < 2 * youngest) plan.room = std::min(most_room, plan.room * 1.5);
   if (cause == StepCause::renewal && age >= 2 * youngest) plan.room = std::max(least_room, plan.room / 1.25);
 
@@ -103,7 +103,9 @@ void Controller::evaluate(State& state, StepCause cause) {
   const DampingSpec damping = damping_in_force(scene_, state);
   double lower = 0;
   const auto renew = [&](double step) {
-    lower = bounds_.renew(state, {time, slack, plan.room, 4 / (cap * cap), step});
+    // most of the room goes to what all contacts (of Hertz) may grow by together, the rest to single ones
+    const double growth = 1 + 0.4 * plan.room;
+    lower = bounds_.renew(state, {time, growth * growth - 1, 0.6 * plan.room, 4 / (cap * cap), step});
     plan.safe = std::min(cap, proved_damped_step(plan.bound.value, damping, step));
   };
   renew(before > 0 ? before : cap);
@@ -131,17 +133,18 @@ void Controller::evaluate(State& state, StepCause cause) {
 
 bool Controller::still_stands(State& state) {
   auto& plan = state.policy;
-  const auto result = bounds_.check(state, static_cast<double>(look_ahead(state)) * plan.dt, slack);
+  const bool due = state.step >= plan.check;
+  if (due) plan.check = state.step + look_ahead(state);
+  const double time = static_cast<double>(plan.check - state.step) * plan.dt;
+  const auto result = due ? bounds_.check(state, time, slack) : bounds_.check_fresh(state, time, slack);
   ++log_.checks;
-  log_.examined += result.examined;
-  log_.outgrown += result.outgrown;
+  log_.examined += result.examined, log_.outgrown += result.outgrown;
   // A stage that begins may set everything in motion at once, and so may collisions.
   plan.ahead = look_ahead(state);
-  if (result.outrun)
-    plan.ahead /= 4;
-  else if (state.step >= plan.check)
+  if (result.outrun && !result.stands)
+    plan.ahead /= 2;
+  else if (due)
     plan.ahead += plan.ahead / 4;
-  plan.check = state.step + look_ahead(state);
   return result.stands;
 }
 

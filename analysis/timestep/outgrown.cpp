@@ -26,11 +26,6 @@ using Shifts = std::array<Quad, Cell::images>;
 
 constexpr std::size_t lanes = Contacts::lanes;
 
-/// Places of the components of a direction.
-std::size_t place(std::size_t entry, std::size_t component) {
-  return (entry / lanes * 3 + component) * lanes + entry % lanes;
-}
-
 /// The smaller leave of the two grains.
 EG_INLINE Batch least_of(std::span<const double> grains, const Index* i, const Index* j) {
   Batch least;
@@ -51,7 +46,7 @@ void add_outgrown(const State& state, const Shifts& shift, const Mat<Batch>& rat
   const Vec<Batch> n = branch * inverse;
   const Batch opening = dot(velocity, n), ahead = Batch(closing_margin * time);
   const Batch overlap = both.branch.w - d2 * inverse + max(-opening, Batch(0.0)) * ahead;
-  const float* from = leave.bound.direction.data() + place(c, 0);
+  const float* from = leave.bound.direction.data() + direction_place(c, 0);
   const Vec<Batch> counted{load_lanes(from), load_lanes(from + lanes), load_lanes(from + 2 * lanes)}, off = n - counted;
   // (a + b)² ≤ 2 (a² + b²), a how far it is off already, b how far it may yet turn
   const Batch onwards = max(dot(velocity, velocity) - opening * opening, Batch(0.0)) * (ahead * ahead * inverse * inverse);
@@ -81,13 +76,6 @@ OverlapForecast forecast(const State& state, Index i, Index j, const Geometry<do
   }
   return {speed * time, speed > 0 && inverse_mass > 0 ? speed * speed / inverse_mass : 0.0,
           std::min(speed, driven) * time};
-}
-
-Vec3 counted_direction(const StandingBound& bound, std::size_t entry) {
-  return {bound.direction[place(entry, 0)], bound.direction[place(entry, 1)], bound.direction[place(entry, 2)]};
-}
-void set_direction(StandingBound& bound, std::size_t entry, const Vec3& n) {
-  for (std::size_t k = 0; k < 3; ++k) bound.direction[place(entry, k)] = static_cast<float>(n[static_cast<int>(k)]);
 }
 
 double turn_forecast(const State& state, const ContactPoint& p, double time) {

@@ -18,9 +18,20 @@ struct Leave {
   std::span<const double> turn;
 };
 
+/// Where StandingBound::direction keeps a component.
+inline std::size_t direction_place(std::size_t entry, std::size_t component) {
+  constexpr std::size_t lanes = Contacts::lanes;
+  return (entry / lanes * 3 + component) * lanes + entry % lanes;
+}
 /// n of a pair as it was counted; 0 when it was not.
-Vec3 counted_direction(const StandingBound& bound, std::size_t entry);
-void set_direction(StandingBound& bound, std::size_t entry, const Vec3& n);
+inline Vec3 counted_direction(const StandingBound& bound, std::size_t entry) {
+  const auto at = [&](std::size_t k) { return bound.direction[direction_place(entry, k)]; };
+  return {at(0), at(1), at(2)};
+}
+inline void set_direction(StandingBound& bound, std::size_t entry, const Vec3& n) {
+  const auto at = [&](std::size_t k) -> float& { return bound.direction[direction_place(entry, k)]; };
+  at(0) = static_cast<float>(n.x), at(1) = static_cast<float>(n.y), at(2) = static_cast<float>(n.z);
+}
 
 /// How far a pair may be pressed in that time [s]: straight on with closing_margin times its closing speed, and at most
 /// until that motion is used up twice. j == no_index: a wall, the fastest there is.

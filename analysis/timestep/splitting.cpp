@@ -62,8 +62,4 @@ SplittingBound splitting_bound(const Sides& sides, const SplittingOptions& optio
   return bound;
 }
 
-SplittingBound splitting_bound(const Sides& sides, const std::vector<double>& t, const BlockRanges& ranges) {
-  return WeightedContacts(sides, {t, {}, {}}).bound(ranges);
-}
-
 }  // namespace eg

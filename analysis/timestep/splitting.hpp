@@ -9,7 +9,7 @@
 #include <array>
 #include <vector>
 
-#include "timestep/block_ranges.hpp"
+#include "timestep/sides.hpp"
 
 namespace eg {
 
@@ -43,8 +43,5 @@ SplittingBound splitting_bound(const Network& network, const SplittingOptions& o
                                SplittingWeights* weights = nullptr);
 SplittingBound splitting_bound(const Sides& sides, const SplittingOptions& options = {},
                                SplittingWeights* weights = nullptr);
-
-/// The bound for scalar weights `t`, one a spring, whose ranges are known.
-SplittingBound splitting_bound(const Sides& sides, const std::vector<double>& t, const BlockRanges& ranges);
 
 }  // namespace eg

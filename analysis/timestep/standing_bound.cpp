@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "assembly/linearise.hpp"
+#include "base/batch.hpp"
 #include "state/damping.hpp"
 #include "timestep/outgrown.hpp"
 #include "timestep/scalar_weights.hpp"
-#include "timestep/splitting.hpp"
 
 namespace eg {
 namespace {
@@ -39,36 +39,58 @@ void add_couple(std::vector<Spring>& springs, Spring s) {
   springs.push_back(s);
 }
 
-/// The largest that a spring can add to λmax(S_i) of a grain at weight 1 (arm ≤ R) [1/s²].
-double most_added(double kn, double kt, double inverse_mass, double inverse_inertia, double radius) {
-  return std::max(kn * inverse_mass, kt * (inverse_mass + inverse_inertia * radius * radius));
-}
-
 /// Overlaps pressed further by the motion of the time to come, and somewhat larger.
-OverlapForecast foreseen(const State& state, const ContactPoint& p, double time, double slack) {
-  OverlapForecast f = forecast(state, p.i, p.j, p.geometry, time);
+OverlapForecast with_slack(OverlapForecast f, const ContactPoint& p, double slack) {
   const double more = slack * std::max(0.0, p.geometry.overlap);
   f.growth += more, f.driven += more;
   return f;
 }
-/// The same with a slack that leaves the grains of the pair a tenth of the bound, if all their contacts (of Hertz) are
-/// given as much: it need not be looked at again for long.
-OverlapForecast with_room(const State& state, const ContactPoint& p, double time, double slack) {
-  const StandingBound& bound = state.policy.bound;
+OverlapGrowth foreseen(const State& state, double time, double slack) {
+  return [&state, time, slack](const ContactPoint& p) {
+    return with_slack(forecast(state, p.i, p.j, p.geometry, time), p, slack);
+  };
+}
+/// With a slack that leaves the grains of the pair a tenth of the bound, if all their contacts (of Hertz) are given as
+/// much: it need not be looked at again for long. Where there is much room, a new contact may grow to what is usual.
+OverlapForecast with_room(const StandingBound& bound, const OverlapForecast& f, const ContactPoint& p, double slack,
+                          double usual) {
   const double most = std::max(bound.grain[p.i], p.j == no_index ? 0.0 : bound.grain[p.j]);
   const double stiffer = 0.9 * bound.value / most;
-  return foreseen(state, p, time, std::clamp(stiffer * stiffer - 1, slack, most_slack));
+  if (p.geometry.overlap + f.growth <= 0) return f;
+  const double roomy = std::clamp(stiffer * stiffer - 1, slack, most_slack);
+  const double more = std::max(roomy * std::max(0.0, p.geometry.overlap),
+                               std::clamp(2 * (stiffer - 1), 0.0, 1.0) * usual - p.geometry.overlap);
+  return f.growth <= more ? OverlapForecast{more} : with_slack(f, p, slack);
 }
 
-OverlapGrowth foreseen(const State& state, double time, double slack) {
-  return [&state, time, slack](const ContactPoint& p) { return foreseen(state, p, time, slack); };
+/// Half of what contacts are allowed on average [m].
+double usual_overlap(const StandingBound& bound) {
+  Batch total(0.0), count(0.0);
+  const Batch zero(0.0), one(1.0);
+  for (std::size_t c = 0; c < bound.overlap.size(); c += Contacts::lanes) {
+    const Batch x = load_lanes(bound.overlap.data() + c);
+    const Mask counts = (x > zero) & (x < Batch(INFINITY));
+    total = total + select(counts, x, zero), count = count + select(counts, one, zero);
+  }
+  return sum(count) > 0 ? 0.5 * sum(total) / sum(count) : 0.0;
 }
 
 bool moves(const Grains& g, Index i) { return g.velocity[i].w > 0 || (g.rotates() && g.spin[i].w > 0); }
 
-double most_added(const Network& net, const Spring& s, Index grain) {
-  return most_added(s.normal, s.tangential, net.inverse_mass[grain], net.rotation ? net.inverse_inertia[grain] : 0.0,
-                    net.radius[grain]);
+/// A grain that a spring acts on.
+struct Inertia {
+  double inverse_mass, inverse_inertia, radius;
+};
+Inertia inertia_of(const Network& net, Index g) {
+  return {net.inverse_mass[g], net.rotation ? net.inverse_inertia[g] : 0.0, net.radius[g]};
+}
+Inertia inertia_of(const Grains& g, Index i) {
+  return {g.velocity[i].w, g.rotates() ? g.spin[i].w : 0.0, g.radius(i)};
+}
+
+/// The largest that a spring can add to λmax(S_i) of a grain at weight 1 (arm ≤ R) [1/s²].
+double most_added(double kn, double kt, const Inertia& g) {
+  return std::max(kn * g.inverse_mass, kt * (g.inverse_mass + g.inverse_inertia * g.radius * g.radius));
 }
 
 /// Moves weights half way (in logarithm) towards centred ones.
@@ -79,7 +101,8 @@ std::vector<double> centre(const Sides& sides, const BlockRanges& ranges, double
   for (std::size_t c = 0; c < t.size(); ++c) {
     if (!sides.is_split(c)) continue;
     const Spring& s = net.springs[c];
-    next[c] = std::sqrt(t[c] * centred_weight(most_added(net, s, s.i), room(s.i), most_added(net, s, s.j), room(s.j)));
+    const auto added = [&](Index g) { return most_added(s.normal, s.tangential, inertia_of(net, g)); };
+    next[c] = std::sqrt(t[c] * centred_weight(added(s.i), room(s.i), added(s.j), room(s.j)));
   }
   return next;
 }
@@ -121,16 +144,22 @@ Block block_of(const Sides& sides, const std::vector<double>& t, Index grain) {
   });
 }
 
+/// By how much all directions of a grain's contacts may be off.
+double turn_room(const StandingBound& bound, std::size_t i) {
+  const double room = std::max(0.0, bound.value - bound.grain[i]);
+  return room < bound.turning[i] * straight ? room / bound.turning[i] : straight;
+}
+
 double allowed(const StandingBound& bound, const ContactPoint& p) {
   return (p.j == no_index ? bound.wall_overlap : bound.overlap)[p.entry];
 }
-/// A contact counts as it is seen here.
-void allow(StandingBound& bound, const ContactPoint& p) {
-  (p.j == no_index ? bound.wall_overlap : bound.overlap)[p.entry] = p.reach;
-  if (p.j == no_index)
-    bound.wall_direction[p.entry] = p.geometry.n;
+/// A contact counts with this overlap and direction.
+void allow(StandingBound& bound, std::size_t entry, bool wall, double reach, const Vec3& n) {
+  (wall ? bound.wall_overlap : bound.overlap)[entry] = reach;
+  if (wall)
+    bound.wall_direction[entry] = n;
   else
-    set_direction(bound, p.entry, p.geometry.n);
+    set_direction(bound, entry, n);
 }
 
 /// What a contact may add to λmax(S_i) of a grain at weight 1 as it moves [1/s²].
@@ -141,16 +170,15 @@ struct Play {
 
 /// Of S_i, the block of translations changes by at most |kn − kt| |n − n₀|, that of rotations by kt a² as much, those
 /// beside by kt a as much. An arm changes by no more than half of the overlap. `reach`: the overlap allowed [m].
-Play play(const Spring& s, double reach, double inverse_mass, double inverse_inertia, double radius) {
-  if (s.couple) return {std::abs(s.normal - s.tangential) * inverse_inertia * rounding, 0};
-  const double shift = std::abs(s.normal - s.tangential) * inverse_mass,
-               turn = s.tangential * radius * radius * inverse_inertia,
-               mixed = s.tangential * radius * std::sqrt(inverse_mass * inverse_inertia);
-  const double norm = 0.5 * (shift + turn) + std::hypot(0.5 * (shift - turn), mixed);
-  return {norm * rounding, (0.5 * mixed + turn) * std::max(0.0, reach) / radius * rounding};
+Play play(double kn, double kt, double reach, const Inertia& g) {
+  const double shift = std::abs(kn - kt) * g.inverse_mass, turn = kt * g.radius * g.radius * g.inverse_inertia,
+               mixed = kt * g.radius * std::sqrt(g.inverse_mass * g.inverse_inertia);
+  const double norm = 0.5 * (shift + turn) + std::sqrt(0.25 * (shift - turn) * (shift - turn) + mixed * mixed);
+  return {norm * rounding, (0.5 * mixed + turn) * std::max(0.0, reach) / g.radius * rounding};
 }
-Play play(const Network& net, const Spring& s, double reach, Index grain) {
-  return play(s, reach, net.inverse_mass[grain], net.rotation ? net.inverse_inertia[grain] : 0.0, net.radius[grain]);
+/// The same of a spring of couples.
+Play play_of_couple(double twisting, double rolling, const Inertia& g) {
+  return {std::abs(twisting - rolling) * g.inverse_inertia * rounding, 0};
 }
 
 /// The sums over the contacts of a grain, at their weights [1/s²].
@@ -164,7 +192,9 @@ std::vector<GrainPlay> plays_of(const Sides& sides, const std::vector<double>& t
   const Network& net = sides.network();
   std::vector<GrainPlay> grains(sides.size());
   const auto add = [&](Index g, double weight, const Spring& s, const SpringMotion& m) {
-    const Play p = play(net, s, m.reach, g);
+    const Inertia inertia = inertia_of(net, g);
+    const Play p = s.couple ? play_of_couple(s.normal, s.tangential, inertia)
+                            : play(s.normal, s.tangential, m.reach, inertia);
     grains[g].turn += weight * p.turn;
     grains[g].counted += weight * (p.arm + p.turn * m.turned);
     grains[g].ahead += weight * (p.arm + p.turn * m.turning);
@@ -178,19 +208,33 @@ std::vector<GrainPlay> plays_of(const Sides& sides, const std::vector<double>& t
   return grains;
 }
 
+/// No λmax(S_i) is above.
+double largest_block(const Sides& sides, const std::vector<double>& t, const BlockRanges& ranges) {
+  double most = largest(ranges.low);
+  for (Index g = 0; g < sides.size(); ++g)
+    if (ranges.high[g] > most)
+      most = std::max(most, std::min(ranges.high[g], block_upper_bound(block_of(sides, t, g), sides.of(g).size())));
+  return most;
+}
+
 }  // namespace
 
-StandingBounds::Counted StandingBounds::counted(const State& state, const ContactPoint& p) const {
-  const auto& velocity = state.grains.velocity;  // w: inverse mass
+StandingBounds::Springs StandingBounds::springs_of(const State& state, const ContactPoint& p) const {
+  const auto& velocity = state.grains.velocity;
   const double inverse_mass = velocity[p.i].w + (p.j == no_index ? 0.0 : velocity[p.j].w);
   const double step = state.policy.bound.step;
-  Counted c{damped_spring(spring_of(p), inverse_mass, damping_, step), {}, p.reach};
+  Springs c{damped_spring(spring_of(p), inverse_mass, damping_, step), {}};
   c.contact.normal *= p.give, c.contact.tangential *= p.give;
   if (state.grains.rotates() && p.has_couple()) {
     c.couple = damped_spring(couple_of(p), inverse_mass, damping_, step);
     c.couple.normal *= 2 * p.give, c.couple.tangential *= 2 * p.give;
   }
   return c;
+}
+
+StandingBounds::Counted StandingBounds::counted(const State& state, const ContactPoint& p) const {
+  const Springs c = springs_of(state, p);
+  return {c.contact.normal, c.contact.tangential, c.couple.normal, c.couple.tangential, p.reach};
 }
 
 double StandingBounds::turned(const State& state, const ContactPoint& p) {
@@ -204,7 +248,6 @@ void StandingBounds::remember(const State& state) {
   i_ = list.i, j_ = list.j, image_ = list.image, id_ = state.grains.id;
   walls_.clear();
   for (const auto& w : state.wall_contacts) walls_.push_back({w.wall, w.grain});
-  pair_begin_.clear();
 }
 
 double StandingBounds::renew(State& state, const RenewOptions& options) {
@@ -213,6 +256,7 @@ double StandingBounds::renew(State& state, const RenewOptions& options) {
   bound.step = options.step;
   damping_ = damping_in_force(scene_, state);
   const bool warm = bound.value > 0 && follow(state);
+  const double usual = usual_overlap(bound);
   bound.overlap.assign(list.size(), 0.0);
   for (std::size_t c = 0; c < list.size(); ++c)
     if (list.is_padding(c)) bound.overlap[c] = INFINITY;
@@ -228,18 +272,18 @@ double StandingBounds::renew(State& state, const RenewOptions& options) {
   visit_contacts(
       scene_, state,
       [&](const ContactPoint& p) {
-        const Counted c = counted(state, p);
+        const Springs c = springs_of(state, p);
         network.springs.push_back(c.contact);
         add_couple(couples, c.couple);
         met.push_back({p.reach, direction_error, turn_forecast(state, p, options.time)});
         bent.resize(couples.size(), met.back());
-        allow(bound, p);
+        allow(bound, p.entry, p.j == no_index, p.reach, p.geometry.n);
         if (p.j != no_index) entry.push_back(p.entry);
         if (warm) start.push_back(p.j == no_index ? 1.0 : weight_of(state, p.entry, p.i, p.j));
       },
       [&](const ContactPoint& p) {
-        return warm ? with_room(state, p, options.time, options.slack)
-                    : foreseen(state, p, options.time, options.slack);
+        const OverlapForecast f = forecast(state, p.i, p.j, p.geometry, options.time);
+        return warm ? with_room(bound, f, p, options.slack, usual) : with_slack(f, p, options.slack);
       });
   network.springs.insert(network.springs.end(), couples.begin(), couples.end());
   met.insert(met.end(), bent.begin(), bent.end());
@@ -251,7 +295,7 @@ double StandingBounds::renew(State& state, const RenewOptions& options) {
   double needed = largest(scalars.ranges.low);
   bound.value = std::max(options.floor, needed * (1 + options.room));
   spread_out(sides, bound.value, warm ? 1 : 3, scalars);
-  needed = splitting_bound(sides, scalars.t, scalars.ranges).value;
+  needed = largest_block(sides, scalars.t, scalars.ranges);
   for (std::size_t k = 0; k < entry.size(); ++k) bound.weight[entry[k]] = scalars.t[k];
   bound.grain = std::move(scalars.ranges.high);
   bound.turning.resize(bound.grain.size());
@@ -276,10 +320,11 @@ bool StandingBounds::follow(State& state) {
   StandingBound& bound = state.policy.bound;
   const auto& list = state.contacts;
   if (id_ != state.grains.id || bound.overlap.size() != i_.size()) return false;
+  const auto pair = [](Index i, Index j) { return static_cast<std::uint64_t>(i) << 32 | j; };
   StandingBound next;
   next.overlap.resize(list.size()), next.weight.resize(list.size()), next.direction.resize(3 * list.size());
+  fresh_.clear();
   std::size_t o = 0;
-  const auto pair = [](Index i, Index j) { return static_cast<std::uint64_t>(i) << 32 | j; };
   for (std::size_t c = 0; c < list.size(); ++c) {
     if (list.is_padding(c)) {
       next.overlap[c] = INFINITY;
@@ -287,11 +332,15 @@ bool StandingBounds::follow(State& state) {
     }
     const std::uint64_t key = pair(list.i[c], list.j[c]);
     while (o < i_.size() && (pair(i_[o], j_[o]) < key || std::isinf(bound.overlap[o]))) ++o;
-    for (std::size_t k = o; k < i_.size() && pair(i_[k], j_[k]) == key; ++k)
-      if (image_.empty() || image_[k] == list.image[c]) {
-        next.overlap[c] = bound.overlap[k], next.weight[c] = bound.weight[k];
-        set_direction(next, c, counted_direction(bound, k));
-      }
+    std::size_t from = o;
+    while (from < i_.size() && pair(i_[from], j_[from]) == key && !image_.empty() && image_[from] != list.image[c])
+      ++from;
+    if (from < i_.size() && pair(i_[from], j_[from]) == key) {
+      next.overlap[c] = bound.overlap[from], next.weight[c] = bound.weight[from];
+      set_direction(next, c, counted_direction(bound, from));
+    } else {
+      fresh_.push_back(c);
+    }
   }
   next.wall_overlap.resize(state.wall_contacts.size()), next.wall_direction.resize(state.wall_contacts.size());
   o = 0;
@@ -310,81 +359,93 @@ bool StandingBounds::follow(State& state) {
 
 void StandingBounds::add_excess(State& state, const Beyond& contact) {
   const auto& g = state.grains;
-  const ContactPoint& at = contact.at;
-  const Counted now = counted(state, at), &before = contact.before;
+  StandingBound& bound = state.policy.bound;
+  const Counted &now = contact.now, &before = contact.before;
   const auto more = [](double later, double earlier) { return std::max(0.0, later - earlier); };
-  const double kn = more(now.contact.normal, before.contact.normal),
-               kt = more(now.contact.tangential, before.contact.tangential);
-  const double couple =
-      std::max(more(now.couple.normal, before.couple.normal), more(now.couple.tangential, before.couple.tangential));
+  const double kn = more(now.normal, before.normal), kt = more(now.tangential, before.tangential);
+  const double couple = std::max(more(now.twisting, before.twisting), more(now.rolling, before.rolling));
   const auto add = [&](Index i, double w) {
-    StandingBound& bound = state.policy.bound;
-    const double inverse_mass = g.velocity[i].w, inverse_inertia = g.rotates() ? g.spin[i].w : 0.0;
+    const Inertia inertia = inertia_of(g, i);
     const auto play_of = [&](const Counted& c) {
-      const Play p = play(c.contact, c.reach, inverse_mass, inverse_inertia, g.radius(i));
-      return Play{w * p.turn + play(c.couple, 0, inverse_mass, inverse_inertia, g.radius(i)).turn, w * p.arm};
+      const Play p = play(c.normal, c.tangential, c.reach, inertia);
+      return Play{w * p.turn + play_of_couple(c.twisting, c.rolling, inertia).turn, w * p.arm};
     };
-    const Play moves = play_of(now), moved = play_of(before);
-    bound.grain[i] +=
-        (w * most_added(kn, kt, inverse_mass, inverse_inertia, g.radius(i)) + couple * inverse_inertia) * rounding +
-        moved.turn * contact.turned + more(moves.arm, moved.arm);
-    bound.turning[i] += more(moves.turn, moved.turn);
-    const double off = std::max(turn_[i], contact.turning);
-    if (bound.grain[i] + bound.turning[i] * off <= bound.value) return;
+    const Play later = play_of(now), earlier = play_of(before);
+    bound.grain[i] += (w * most_added(kn, kt, inertia) + couple * inertia.inverse_inertia) * rounding +
+                      earlier.turn * contact.turned + more(later.arm, earlier.arm);
+    bound.turning[i] += more(later.turn, earlier.turn);
+    if (bound.grain[i] + bound.turning[i] * std::max(turn_[i], contact.turning) <= bound.value) return;
     outrun_ = outrun_ || contact.outran;
     if (place_[i] == no_index) place_[i] = 0, doubtful_.push_back(i);
   };
-  const bool wall = at.j == no_index;
-  const bool split = !wall && moves(g, at.i) && moves(g, at.j);
-  const double t = split ? weight_of(state, at.entry, at.i, at.j) : 0.0;
-  add(at.i, 1 + t);
-  if (!wall) add(at.j, split ? 1 + 1 / t : 1.0), state.policy.bound.weight[at.entry] = t;
+  const bool wall = contact.j == no_index;
+  const bool split = !wall && moves(g, contact.i) && moves(g, contact.j);
+  const double t = split ? weight_of(state, contact.entry, contact.i, contact.j) : 0.0;
+  add(contact.i, 1 + t);
+  if (!wall) add(contact.j, split ? 1 + 1 / t : 1.0), bound.weight[contact.entry] = t;
+  allow(bound, contact.entry, wall, now.reach, contact.n);
 }
 
-std::vector<StandingBounds::Beyond> StandingBounds::beyond(const State& state, double time, double slack) {
+void StandingBounds::find_beyond(const State& state, const ContactSelection& selection, double time, double slack) {
   const StandingBound& bound = state.policy.bound;
-  const Leave leave{bound, turn_};
-  const auto pairs = outgrown_pairs(state, leave, time), walls = outgrown_walls(state, leave, time);
-  std::vector<Beyond> found;
+  const double usual = usual_overlap(bound);
+  beyond_.clear();
   visit_contacts(
-      scene_, state, {pairs, walls},
+      scene_, state, selection,
       [&](const ContactPoint& p) {
-        const double turn = std::min(turn_[p.i], p.j == no_index ? INFINITY : turn_[p.j]);
-        const Beyond b{p, turned(state, p), turn_forecast(state, p, time), p.geometry.overlap > allowed(bound, p), {}};
-        if (p.reach > allowed(bound, p) * (1 + 1e-9) || (b.turned > 0 && b.turned + b.turning > turn)) found.push_back(b);
+        const double turned = StandingBounds::turned(state, p), turning = turn_forecast(state, p, time);
+        const double least = std::min(turn_[p.i], p.j == no_index ? INFINITY : turn_[p.j]), may = allowed(bound, p);
+        if (p.reach > may * (1 + 1e-9) || (turned > 0 && turned + turning > least))
+          beyond_.push_back({p.i, p.j, p.entry, p.geometry.n, turned, turning, p.geometry.overlap > may,
+                             counted(state, p), {}});
       },
       [&](const ContactPoint& p) {
         const double kept = allowed(bound, p) - p.geometry.overlap;
-        if (forecast(state, p.i, p.j, p.geometry, time).growth <= kept) return OverlapForecast{kept};
-        OverlapForecast f = with_room(state, p, time, slack);
+        OverlapForecast f = forecast(state, p.i, p.j, p.geometry, time);
+        if (f.growth <= kept) return OverlapForecast{kept};
+        f = with_room(bound, f, p, slack, usual);
         f.growth = std::max(f.growth, kept), f.driven = std::max(f.driven, kept);
         return f;
       });
-  std::vector<std::size_t> entries, wall_entries;
-  for (const auto& b : found) (b.at.j == no_index ? wall_entries : entries).push_back(b.at.entry);
+  std::vector<std::size_t> entries, wall_entries;  // of those that were counted already
+  std::vector<std::size_t> places;
+  for (std::size_t k = 0; k < beyond_.size(); ++k) {
+    const bool wall = beyond_[k].j == no_index;
+    if ((wall ? bound.wall_overlap : bound.overlap)[beyond_[k].entry] == 0) continue;
+    (wall ? wall_entries : entries).push_back(beyond_[k].entry), places.push_back(k);
+  }
   std::size_t k = 0;
   visit_contacts(
-      scene_, state, {entries, wall_entries}, [&](const ContactPoint& p) { found[k - 1].before = counted(state, p); },
+      scene_, state, {entries, wall_entries},
+      [&](const ContactPoint& p) { beyond_[places[k - 1]].before = counted(state, p); },
       [&](const ContactPoint& p) { return ++k, OverlapForecast{allowed(bound, p) - p.geometry.overlap}; });
-  return found;
 }
 
 StandingCheck StandingBounds::check(State& state, double time, double slack) {
-  damping_ = damping_in_force(scene_, state);
-  StandingBound& bound = state.policy.bound;
+  const StandingBound& bound = state.policy.bound;
   turn_.resize(state.grains.size());  // half of the room is for growth
-  for (std::size_t i = 0; i < turn_.size(); ++i) {
-    const double room = 0.5 * std::max(0.0, bound.value - bound.grain[i]);
-    turn_[i] = room < bound.turning[i] * straight ? room / bound.turning[i] : straight;
-  }
-  const auto outgrown = beyond(state, time, slack);
-  StandingCheck result;
-  result.outgrown = outgrown.size();
-  if (outgrown.empty()) return result;
+  for (std::size_t i = 0; i < turn_.size(); ++i) turn_[i] = 0.5 * turn_room(bound, i);
+  const Leave leave{bound, turn_};
+  const auto pairs = outgrown_pairs(state, leave, time), walls = outgrown_walls(state, leave, time);
+  return check(state, {pairs, walls}, time, slack);
+}
 
+StandingCheck StandingBounds::check_fresh(State& state, double time, double slack) {
+  const StandingBound& bound = state.policy.bound;
+  turn_.resize(state.grains.size());  // all of the room may have been promised to the other contacts
+  for (std::size_t i = 0; i < turn_.size(); ++i) turn_[i] = turn_room(bound, i);
+  const auto walls = outgrown_walls(state, {bound, turn_}, time);
+  return check(state, {fresh_, walls}, time, slack);
+}
+
+StandingCheck StandingBounds::check(State& state, const ContactSelection& selection, double time, double slack) {
+  damping_ = damping_in_force(scene_, state);
+  const StandingBound& bound = state.policy.bound;
+  find_beyond(state, selection, time, slack);
+  StandingCheck result;
+  result.outgrown = beyond_.size();
   place_.resize(state.grains.size(), no_index);
-  for (const auto& b : outgrown) add_excess(state, b);
-  for (const auto& b : outgrown) allow(bound, b.at);
+  for (const auto& b : beyond_) add_excess(state, b);
   result.outrun = std::exchange(outrun_, false);
   const std::vector<Index> doubtful = std::move(doubtful_);
   doubtful_.clear();
@@ -401,22 +462,11 @@ StandingCheck StandingBounds::check(State& state, double time, double slack) {
 
 std::vector<std::size_t> StandingBounds::pairs_of(const State& state, const std::vector<Index>& grains) {
   const auto& list = state.contacts;
-  if (pair_begin_.empty()) {
-    pair_begin_.assign(state.grains.size() + 2, 0);
-    const auto each = [&](auto visit) {
-      for (std::size_t c = 0; c < list.size(); ++c)
-        if (!list.is_padding(c)) visit(list.i[c], c), visit(list.j[c], c);
-    };
-    each([&](Index g, std::size_t) { ++pair_begin_[g + 2]; });
-    std::partial_sum(pair_begin_.begin(), pair_begin_.end(), pair_begin_.begin());
-    pair_.resize(pair_begin_.back());
-    each([&](Index g, std::size_t c) { pair_[pair_begin_[g + 1]++] = c; });
-  }
+  asked_.assign(state.grains.size(), 0);
+  for (const Index g : grains) asked_[g] = 1;
   std::vector<std::size_t> pairs;
-  for (const Index g : grains)
-    pairs.insert(pairs.end(), pair_.begin() + pair_begin_[g], pair_.begin() + pair_begin_[g + 1]);
-  std::ranges::sort(pairs);
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  for (std::size_t c = 0; c < list.size(); ++c)
+    if ((asked_[list.i[c]] | asked_[list.j[c]]) != 0 && !list.is_padding(c)) pairs.push_back(c);
   return pairs;
 }
 
@@ -451,7 +501,7 @@ StandingBounds::Part StandingBounds::part(const State& state, const std::vector<
           next_pair = std::find(next_pair, out.pairs.end(), p.entry);
           out.pair_reach[static_cast<std::size_t>(next_pair - out.pairs.begin())] = p.reach;
         }
-        Counted c = counted(state, p);
+        Springs c = springs_of(state, p);
         for (Spring* s : {&c.contact, &c.couple}) {
           s->i = place(p.i);
           if (p.j != no_index) s->j = place(p.j);

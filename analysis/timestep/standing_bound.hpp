@@ -49,20 +49,27 @@ class StandingBounds {
   /// Whether λmax ≤ bound.value for the `time` to come [s]. Pairs that outgrow what they are allowed are allowed more,
   /// with the slack [-], as long as their grains stay below the bound.
   StandingCheck check(State& state, double time, double slack);
+  /// The same after follow(), for what is left of the time that the last check was for: looks at new pairs only.
+  StandingCheck check_fresh(State& state, double time, double slack);
 
  private:
   /// The springs of a contact as the damped network has them.
-  struct Counted {
+  struct Springs {
     Spring contact;
-    Spring couple;     ///< of twice the stiffness; nothing where the contact has none
-    double reach = 0;  ///< overlap that they belong to [m]
+    Spring couple;  ///< of twice the stiffness; nothing where the contact has none
+  };
+  struct Counted {
+    double normal = 0, tangential = 0, twisting = 0, rolling = 0;  ///< their stiffnesses
+    double reach = 0;                                              ///< the overlap that they belong to [m]
   };
   /// A contact that may be beyond what it is allowed.
   struct Beyond {
-    ContactPoint at;
-    double turned = 0, turning = 0;  ///< |n − n₀| now, and how much may come to it until the next check
-    bool outran = false;             ///< it is beyond it already
-    Counted before;                  ///< at what it was allowed
+    Index i, j;
+    std::size_t entry;
+    Vec3 n;
+    double turned, turning;  ///< |n − n₀| now, and how much may come to it until the next check
+    bool outran;             ///< its overlap is beyond it already
+    Counted now, before;     ///< at what it is to be allowed, at what it was
   };
   struct Part {
     Network network;                 ///< some grains, numbered afresh, first those asked for; then their neighbours
@@ -73,14 +80,16 @@ class StandingBounds {
   };
   static constexpr std::size_t no_entry = ~std::size_t{0};
 
+  Springs springs_of(const State& state, const ContactPoint& contact) const;
   Counted counted(const State& state, const ContactPoint& contact) const;
   static double turned(const State& state, const ContactPoint& contact);
   /// `time`: until the next check [s]; `couples`: whether to count them: without, λmax of the part is no upper bound.
   Part part(const State& state, const std::vector<Index>& grains, const OverlapGrowth& growth, double time,
             bool couples);
-  /// Contacts that may pass what they are allowed within that time, at what they are to be allowed.
-  std::vector<Beyond> beyond(const State& state, double time, double slack);
-  /// Adds what such a contact may add to λmax(S_i) of its grains.
+  StandingCheck check(State& state, const ContactSelection& selection, double time, double slack);
+  /// Fills beyond_ with those of the contacts that may pass what they are allowed within that time.
+  void find_beyond(const State& state, const ContactSelection& selection, double time, double slack);
+  /// Allows such a contact more, and adds what that may add to λmax(S_i) of its grains.
   void add_excess(State& state, const Beyond& contact);
   /// Places in State::contacts of all pairs of these grains, ascending.
   std::vector<std::size_t> pairs_of(const State& state, const std::vector<Index>& grains);
@@ -96,8 +105,9 @@ class StandingBounds {
   std::vector<double> turn_;                 ///< leave of each grain in the check under way
   std::vector<Index> doubtful_;              ///< grains that may have passed the bound
   bool outrun_ = false;                      ///< some of them before the check
-  std::vector<std::uint32_t> pair_begin_;    ///< pairs of a grain in pair_; empty until asked for
-  std::vector<std::size_t> pair_;
+  std::vector<std::size_t> fresh_;           ///< pairs that follow() met for the first time
+  std::vector<Beyond> beyond_;
+  std::vector<std::uint8_t> asked_;  ///< grains whose pairs are wanted
   std::vector<Index> place_;  ///< of a grain in a part; no_index between calls
 };
 

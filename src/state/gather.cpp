@@ -89,7 +89,7 @@ class Gatherer {
     if (!(reach > 0) || !std::isfinite(f.energy)) return reach;
     const double most = f.energy + (overlap > 0 ? 2 * Law::normal_energy(pair, overlap) : 0.0);
     double stored = Law::normal_energy(pair, reach);
-    for (int step = 0; step < 6 && (step > 0 || stored > most) && std::abs(stored - most) > 1e-6 * most; ++step) {
+    for (int step = 0; step < 6 && (step > 0 || stored > most) && std::abs(stored - most) > 1e-3 * most; ++step) {
       const double force = Law::template normal<double>(pair, reach).force;
       reach *= std::pow(most / stored, stored / (force * reach));
       stored = Law::normal_energy(pair, reach);
