@@ -37,10 +37,10 @@ struct ControllerLog {
 /// policy "certified": dt = safety × certified limit; "fixed": the given dt; "estimate:NAME": safety × that rule of
 /// thumb. All of them are held against the certified limit.
 ///
-/// The certificate is a StandingBound: a bound of λmax with some room, checked every few dozen steps and whenever the
-/// list of contacts changes, at the overlaps that pairs can reach until the next check with half as much again as their
-/// present closing speed. When a check fails, or the bound is old, it is renewed. The step never exceeds that of the
-/// lightest grain with twelve contacts at an overlap of 1e-6 radii, which governs while little or nothing touches.
+/// The certificate is a StandingBound: a bound of λmax with some room, checked at intervals (new pairs whenever the
+/// list of contacts changes) at the overlaps and directions that pairs can reach until the next check with half as much
+/// again as their present speed. When a check fails, or the bound is old, it is renewed. The step never exceeds that of
+/// the lightest grain with twelve contacts at an overlap of 1e-6 radii, which governs while little or nothing touches.
 class Controller final : public StepPolicy {
  public:
   explicit Controller(const Scene& scene) : scene_(scene), bounds_(scene) {}

@@ -49,7 +49,8 @@ void add_outgrown(const State& state, const Shifts& shift, const Mat<Batch>& rat
   const float* from = leave.bound.direction.data() + direction_place(c, 0);
   const Vec<Batch> counted{load_lanes(from), load_lanes(from + lanes), load_lanes(from + 2 * lanes)}, off = n - counted;
   // (a + b)² ≤ 2 (a² + b²), a how far it is off already, b how far it may yet turn
-  const Batch onwards = max(dot(velocity, velocity) - opening * opening, Batch(0.0)) * (ahead * ahead * inverse * inverse);
+  const Batch onwards =
+      max(dot(velocity, velocity) - opening * opening, Batch(0.0)) * (ahead * ahead * inverse * inverse);
   const Batch turn = least_of(leave.turn, list.i.data() + c, list.j.data() + c);
   const Mask over = (overlap > max(load_lanes(leave.bound.overlap.data() + c), Batch(0.0))) |
                     ((dot(counted, counted) > Batch(0.5)) & ((dot(off, off) + onwards) * Batch(2.0) > turn * turn));

@@ -37,8 +37,8 @@ inline void set_direction(StandingBound& bound, std::size_t entry, const Vec3& n
 /// until that motion is used up twice. j == no_index: a wall, the fastest there is.
 OverlapForecast forecast(const State& state, Index i, Index j, const Geometry<double>& g, double time);
 
-/// By how much the direction of a contact may change in that time, |Δn|, going straight on with closing_margin times its
-/// speed.
+/// By how much the direction of a contact may change in that time, |Δn|, going straight on with closing_margin times
+/// its speed.
 double turn_forecast(const State& state, const ContactPoint& p, double time);
 
 /// Pairs of State::contacts whose overlap or direction, going straight on, passes what is allowed, some whose direction

@@ -6,18 +6,16 @@
 #include <utility>
 
 #include "assembly/linearise.hpp"
-#include "base/batch.hpp"
 #include "state/damping.hpp"
+#include "timestep/allowance.hpp"
 #include "timestep/outgrown.hpp"
 #include "timestep/scalar_weights.hpp"
 
 namespace eg {
 namespace {
 
-constexpr double widest = 100;          // weight
-constexpr double most_slack = 2;        // by which an overlap may grow, at most [-]
-constexpr double nearest = 0.02;        // room of a grain below the bound, as the weights see it [of the bound]
-constexpr double rounding = 1 + 1e-11;  // of sums of a few dozen positive numbers
+constexpr double widest = 100;            // weight
+constexpr double nearest = 0.02;          // room of a grain below the bound, as the weights see it [of the bound]
 constexpr double direction_error = 1e-7;  // of a unit vector kept in single precision
 constexpr double straight = 2;            // no two unit vectors are further apart
 
@@ -39,59 +37,7 @@ void add_couple(std::vector<Spring>& springs, Spring s) {
   springs.push_back(s);
 }
 
-/// Overlaps pressed further by the motion of the time to come, and somewhat larger.
-OverlapForecast with_slack(OverlapForecast f, const ContactPoint& p, double slack) {
-  const double more = slack * std::max(0.0, p.geometry.overlap);
-  f.growth += more, f.driven += more;
-  return f;
-}
-OverlapGrowth foreseen(const State& state, double time, double slack) {
-  return [&state, time, slack](const ContactPoint& p) {
-    return with_slack(forecast(state, p.i, p.j, p.geometry, time), p, slack);
-  };
-}
-/// With a slack that leaves the grains of the pair a tenth of the bound, if all their contacts (of Hertz) are given as
-/// much: it need not be looked at again for long. Where there is much room, a new contact may grow to what is usual.
-OverlapForecast with_room(const StandingBound& bound, const OverlapForecast& f, const ContactPoint& p, double slack,
-                          double usual) {
-  const double most = std::max(bound.grain[p.i], p.j == no_index ? 0.0 : bound.grain[p.j]);
-  const double stiffer = 0.9 * bound.value / most;
-  if (p.geometry.overlap + f.growth <= 0) return f;
-  const double roomy = std::clamp(stiffer * stiffer - 1, slack, most_slack);
-  const double more = std::max(roomy * std::max(0.0, p.geometry.overlap),
-                               std::clamp(2 * (stiffer - 1), 0.0, 1.0) * usual - p.geometry.overlap);
-  return f.growth <= more ? OverlapForecast{more} : with_slack(f, p, slack);
-}
-
-/// Half of what contacts are allowed on average [m].
-double usual_overlap(const StandingBound& bound) {
-  Batch total(0.0), count(0.0);
-  const Batch zero(0.0), one(1.0);
-  for (std::size_t c = 0; c < bound.overlap.size(); c += Contacts::lanes) {
-    const Batch x = load_lanes(bound.overlap.data() + c);
-    const Mask counts = (x > zero) & (x < Batch(INFINITY));
-    total = total + select(counts, x, zero), count = count + select(counts, one, zero);
-  }
-  return sum(count) > 0 ? 0.5 * sum(total) / sum(count) : 0.0;
-}
-
 bool moves(const Grains& g, Index i) { return g.velocity[i].w > 0 || (g.rotates() && g.spin[i].w > 0); }
-
-/// A grain that a spring acts on.
-struct Inertia {
-  double inverse_mass, inverse_inertia, radius;
-};
-Inertia inertia_of(const Network& net, Index g) {
-  return {net.inverse_mass[g], net.rotation ? net.inverse_inertia[g] : 0.0, net.radius[g]};
-}
-Inertia inertia_of(const Grains& g, Index i) {
-  return {g.velocity[i].w, g.rotates() ? g.spin[i].w : 0.0, g.radius(i)};
-}
-
-/// The largest that a spring can add to λmax(S_i) of a grain at weight 1 (arm ≤ R) [1/s²].
-double most_added(double kn, double kt, const Inertia& g) {
-  return std::max(kn * g.inverse_mass, kt * (g.inverse_mass + g.inverse_inertia * g.radius * g.radius));
-}
 
 /// Moves weights half way (in logarithm) towards centred ones.
 std::vector<double> centre(const Sides& sides, const BlockRanges& ranges, double sigma, const std::vector<double>& t) {
@@ -162,52 +108,6 @@ void allow(StandingBound& bound, std::size_t entry, bool wall, double reach, con
     set_direction(bound, entry, n);
 }
 
-/// What a contact may add to λmax(S_i) of a grain at weight 1 as it moves [1/s²].
-struct Play {
-  double turn = 0;  ///< for every unit by which its direction is off, |n − n₀|
-  double arm = 0;   ///< as its arm follows the overlap, in all
-};
-
-/// Of S_i, the block of translations changes by at most |kn − kt| |n − n₀|, that of rotations by kt a² as much, those
-/// beside by kt a as much. An arm changes by no more than half of the overlap. `reach`: the overlap allowed [m].
-Play play(double kn, double kt, double reach, const Inertia& g) {
-  const double shift = std::abs(kn - kt) * g.inverse_mass, turn = kt * g.radius * g.radius * g.inverse_inertia,
-               mixed = kt * g.radius * std::sqrt(g.inverse_mass * g.inverse_inertia);
-  const double norm = 0.5 * (shift + turn) + std::sqrt(0.25 * (shift - turn) * (shift - turn) + mixed * mixed);
-  return {norm * rounding, (0.5 * mixed + turn) * std::max(0.0, reach) / g.radius * rounding};
-}
-/// The same of a spring of couples.
-Play play_of_couple(double twisting, double rolling, const Inertia& g) {
-  return {std::abs(twisting - rolling) * g.inverse_inertia * rounding, 0};
-}
-
-/// The sums over the contacts of a grain, at their weights [1/s²].
-struct GrainPlay {
-  double turn = 0;     ///< for every unit by which all directions are off
-  double counted = 0;  ///< to be added to λmax(S_i) of the present directions for a bound about those counted
-  double ahead = 0;    ///< … for one that holds until the next check
-};
-/// `met`: of every spring.
-std::vector<GrainPlay> plays_of(const Sides& sides, const std::vector<double>& t, std::span<const SpringMotion> met) {
-  const Network& net = sides.network();
-  std::vector<GrainPlay> grains(sides.size());
-  const auto add = [&](Index g, double weight, const Spring& s, const SpringMotion& m) {
-    const Inertia inertia = inertia_of(net, g);
-    const Play p = s.couple ? play_of_couple(s.normal, s.tangential, inertia)
-                            : play(s.normal, s.tangential, m.reach, inertia);
-    grains[g].turn += weight * p.turn;
-    grains[g].counted += weight * (p.arm + p.turn * m.turned);
-    grains[g].ahead += weight * (p.arm + p.turn * m.turning);
-  };
-  for (std::size_t c = 0; c < t.size(); ++c) {
-    const Spring& s = net.springs[c];
-    const bool split = sides.is_split(c);
-    add(s.i, s.i == s.j ? 4 : split ? 1 + t[c] : 1, s, met[c]);
-    if (s.j != no_index && s.j != s.i) add(s.j, split ? 1 + 1 / t[c] : 1, s, met[c]);
-  }
-  return grains;
-}
-
 /// No λmax(S_i) is above.
 double largest_block(const Sides& sides, const std::vector<double>& t, const BlockRanges& ranges) {
   double most = largest(ranges.low);
@@ -265,8 +165,8 @@ double StandingBounds::renew(State& state, const RenewOptions& options) {
   bound.wall_direction.assign(state.wall_contacts.size(), Vec3{});
   Network network = bare_network(scene_, state);
   network.springs.reserve(list.size() + state.wall_contacts.size());
-  std::vector<Spring> couples;            // come last
-  std::vector<SpringMotion> met, bent;    // of each spring, each couple
+  std::vector<Spring> couples;          // come last
+  std::vector<SpringMotion> met, bent;  // of each spring, each couple
   std::vector<double> start;
   std::vector<std::size_t> entry;  // of each spring between grains
   visit_contacts(
@@ -371,7 +271,7 @@ void StandingBounds::add_excess(State& state, const Beyond& contact) {
       return Play{w * p.turn + play_of_couple(c.twisting, c.rolling, inertia).turn, w * p.arm};
     };
     const Play later = play_of(now), earlier = play_of(before);
-    bound.grain[i] += (w * most_added(kn, kt, inertia) + couple * inertia.inverse_inertia) * rounding +
+    bound.grain[i] += (w * most_added(kn, kt, inertia) + couple * inertia.inverse_inertia) * sum_rounding +
                       earlier.turn * contact.turned + more(later.arm, earlier.arm);
     bound.turning[i] += more(later.turn, earlier.turn);
     if (bound.grain[i] + bound.turning[i] * std::max(turn_[i], contact.turning) <= bound.value) return;
@@ -396,8 +296,8 @@ void StandingBounds::find_beyond(const State& state, const ContactSelection& sel
         const double turned = StandingBounds::turned(state, p), turning = turn_forecast(state, p, time);
         const double least = std::min(turn_[p.i], p.j == no_index ? INFINITY : turn_[p.j]), may = allowed(bound, p);
         if (p.reach > may * (1 + 1e-9) || (turned > 0 && turned + turning > least))
-          beyond_.push_back({p.i, p.j, p.entry, p.geometry.n, turned, turning, p.geometry.overlap > may,
-                             counted(state, p), {}});
+          beyond_.push_back(
+              {p.i, p.j, p.entry, p.geometry.n, turned, turning, p.geometry.overlap > may, counted(state, p), {}});
       },
       [&](const ContactPoint& p) {
         const double kept = allowed(bound, p) - p.geometry.overlap;
@@ -517,8 +417,7 @@ StandingBounds::Part StandingBounds::part(const State& state, const std::vector<
   return out;
 }
 
-bool StandingBounds::examine(State& state, const std::vector<Index>& grains, const OverlapGrowth& growth,
-                             double time) {
+bool StandingBounds::examine(State& state, const std::vector<Index>& grains, const OverlapGrowth& growth, double time) {
   StandingBound& bound = state.policy.bound;
   const Part stiff = part(state, grains, growth, time, true);
   const Network& net = stiff.network;

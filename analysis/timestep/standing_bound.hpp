@@ -9,6 +9,7 @@
 // stiffness against the ground on each of its grains, which is not less. Proof: certificates.md.
 #include "assembly/damping.hpp"
 #include "state/gather.hpp"
+#include "timestep/play.hpp"
 
 namespace eg {
 
@@ -24,14 +25,7 @@ struct StandingCheck {
   bool stands = true;
   std::size_t outgrown = 0;  ///< contacts beyond what they are allowed, in overlap or direction
   std::size_t examined = 0;  ///< grains worked out afresh
-  bool outrun = false;       ///< a contact had gone beyond what it was allowed already, and its grain may have had no room
-};
-
-/// How a spring that is counted may move.
-struct SpringMotion {
-  double reach = 0;    ///< overlap that it is allowed [m]
-  double turned = 0;   ///< |n − n₀|, n₀ the direction that it was counted with
-  double turning = 0;  ///< how much n may change until the next check
+  bool outrun = false;  ///< a contact had gone beyond what it was allowed already, and its grain may have had no room
 };
 
 /// Keeps state.policy.bound, which is all that it remembers but for scratch and the keys of the lists.
@@ -76,7 +70,7 @@ class StandingBounds {
     std::vector<std::size_t> entry;  ///< of each spring in State::contacts; no_entry for a wall
     std::vector<std::size_t> pairs, walls;       ///< all listed contacts of the grains asked for …
     std::vector<double> pair_reach, wall_reach;  ///< … and the overlap they were counted at [m], 0 when not at all
-    std::vector<SpringMotion> met;  ///< of each spring
+    std::vector<SpringMotion> met;               ///< of each spring
   };
   static constexpr std::size_t no_entry = ~std::size_t{0};
 
@@ -108,7 +102,7 @@ class StandingBounds {
   std::vector<std::size_t> fresh_;           ///< pairs that follow() met for the first time
   std::vector<Beyond> beyond_;
   std::vector<std::uint8_t> asked_;  ///< grains whose pairs are wanted
-  std::vector<Index> place_;  ///< of a grain in a part; no_index between calls
+  std::vector<Index> place_;         ///< of a grain in a part; no_index between calls
 };
 
 }  // namespace eg

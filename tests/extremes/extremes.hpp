@@ -111,6 +111,31 @@ inline Network crushed(double overlap) {
   return linearise(scene, state);
 }
 
+inline Network with_friction(double friction) {
+  Scene scene = scene_of("hertz-mindlin");
+  scene.materials[0].friction = friction;
+  return linearise(scene, random_packing(scene, "uniform", 100, 1, 0.66, 300));
+}
+
+/// Pairs that touch each other and nothing else, and single grains between them.
+inline Network rattlers(std::size_t count) {
+  Network net = row_of_grains(count, 0.9);
+  std::erase_if(net.springs, [](const Spring& s) { return s.i % 3 != 0; });
+  return net;
+}
+
+/// FCC with a small grain of the same density in one of the holes between six.
+inline Network interstitial() {
+  const Scene scene = lattice_scene("hertz-mindlin", "fcc", {3, 3, 3}, 0.005);
+  Packing packing = make_packing(scene);
+  const double cell = packing.box.x / 3, radius = packing.radius.front();
+  packing.position.push_back(packing.position.front() + Vec3{0.5 * cell, 0, 0});
+  packing.radius.push_back(0.5 * cell - radius + 0.01 * radius);
+  State state = make_state(scene, packing);
+  Engine engine(scene, state);
+  return linearise(scene, state);
+}
+
 inline Network isostatic(std::size_t grains) {
   Scene scene = scene_of("hertz-mindlin");
   scene.materials[0].friction = 0;
@@ -155,7 +180,12 @@ inline std::vector<Extreme> extremes(bool with_large) {
       {"FCC at 1 GPa", [] { return pressed_lattice(1e9); }},
       {"overlap of 30 % of the diameter", [] { return crushed(0.3); }},
       {"near-isostatic, frictionless", [] { return isostatic(200); }},
+      {"friction 0", [] { return with_friction(0); }},
+      {"friction 1", [] { return with_friction(1); }},
+      {"friction 1e3", [] { return with_friction(1e3); }},
+      {"rattlers only: pairs and single grains", [] { return rattlers(60); }},
       {"FCC with a vacancy", [] { return flawed_crystal(0); }},
+      {"FCC with a small grain in a hole", [] { return interstitial(); }},
       {"FCC, one grain 100 times lighter", [] { return flawed_crystal(100); }},
       {"FCC, one grain 1e4 times lighter", [] { return flawed_crystal(1e4); }},
       {"hexagonal disks, 400", [] { return lattice_network("hexagonal", 14, 1, 1, true); }},

@@ -49,6 +49,7 @@ class Scramble {
     }
   }
   void fill(double& x) { x = number(); }
+  void fill(float& x) { x = static_cast<float>(random_.normal()); }
   void fill(bool& x) { x = random_.uniform() < 0.5; }
   template <std::integral T>
   requires(!std::same_as<T, bool>) void fill(T& x) { x = static_cast<T>(random_.below(2)); }
@@ -87,7 +88,10 @@ eg::State scrambled_state() {
   s.policy.bound.overlap.resize(19);
   s.policy.bound.weight.resize(19);
   s.policy.bound.wall_overlap.resize(3);
+  s.policy.bound.direction.resize(57);
+  s.policy.bound.wall_direction.resize(3);
   s.policy.bound.grain.resize(30);
+  s.policy.bound.turning.resize(30);
   Scramble scramble;
   eg::visit_state(scramble, s);
   s.contacts.chunk_begin = {0, 8, 19};

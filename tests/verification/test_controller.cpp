@@ -28,7 +28,8 @@ TEST(Controller, ShearedStaysBelowTheLimitAndNearIt) {
   expect_certified(test::controlled_scene(200, test::triaxial), 1997);
 }
 TEST(Controller, DashpotsAreCountedIn) {
-  expect_certified(test::controlled_scene(200, test::squeeze, "local = 0.2\nnormal_ratio = 0.1\nshear_ratio = 0.1"), 997);
+  expect_certified(test::controlled_scene(200, test::squeeze, "local = 0.2\nnormal_ratio = 0.1\nshear_ratio = 0.1"),
+                   997);
 }
 
 }  // namespace

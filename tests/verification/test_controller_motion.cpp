@@ -54,7 +54,8 @@ TEST_P(ControllerIn, NeverPassesTheLimit) {
       largest = std::max(largest, ratio), sum += ratio, ++steps;
     };
     run_stages(scene, state, controller, observer);
-    outruns += controller.log().outruns, evaluations += controller.log().all_evaluations(), checks += controller.log().checks;
+    outruns += controller.log().outruns, evaluations += controller.log().all_evaluations(),
+        checks += controller.log().checks;
   }
   fmt::print("{}: dt over limit: mean {:.3f}, largest {:.4f}; {} evaluations, {} checks, {} outruns in {} steps\n",
              motion.name, sum / static_cast<double>(steps), largest, evaluations, checks, outruns, steps);
@@ -63,7 +64,8 @@ TEST_P(ControllerIn, NeverPassesTheLimit) {
 }
 
 constexpr const char* still = "[[stage]]\nname = \"still\"\nuntil = { steps = 4000 }\n";
-constexpr const char* squeezed = "[[stage]]\nname = \"in\"\nstrain_rate = { x = 500, y = 500, z = 500 }\nuntil = { steps = 4000 }\n";
+constexpr const char* squeezed =
+    "[[stage]]\nname = \"in\"\nstrain_rate = { x = 500, y = 500, z = 500 }\nuntil = { steps = 4000 }\n";
 constexpr const char* sheared = "[[stage]]\nname = \"slide\"\nstrain_rate = { xz = 2000 }\nuntil = { steps = 4000 }\n";
 
 INSTANTIATE_TEST_SUITE_P(Motions, ControllerIn,

@@ -1,0 +1,50 @@
+#pragma once
+// How much S_i of contact splitting may change while a contact turns and its arms follow the overlap (certificates.md).
+#include <span>
+#include <vector>
+
+#include "state/state.hpp"
+#include "timestep/sides.hpp"
+
+namespace eg {
+
+inline constexpr double sum_rounding = 1 + 1e-11;  ///< of sums of a few dozen positive numbers
+
+/// A grain that a spring acts on.
+struct Inertia {
+  double inverse_mass, inverse_inertia, radius;
+};
+Inertia inertia_of(const Network& net, Index g);
+Inertia inertia_of(const Grains& g, Index i);
+
+/// The largest that a spring can add to λmax(S_i) of a grain at weight 1 (arm ≤ R) [1/s²].
+double most_added(double kn, double kt, const Inertia& g);
+
+/// What a contact may add to λmax(S_i) of a grain at weight 1 as it moves [1/s²].
+struct Play {
+  double turn = 0;  ///< for every unit by which its direction is off, |n − n₀|
+  double arm = 0;   ///< as its arm follows the overlap, in all
+};
+
+/// `reach`: the overlap allowed [m].
+Play play(double kn, double kt, double reach, const Inertia& g);
+/// The same of a spring of couples.
+Play play_of_couple(double twisting, double rolling, const Inertia& g);
+
+/// How a spring that is counted may move.
+struct SpringMotion {
+  double reach = 0;    ///< overlap that it is allowed [m]
+  double turned = 0;   ///< |n − n₀|, n₀ the direction that it was counted with
+  double turning = 0;  ///< how much n may change until the next check
+};
+
+/// The sums over the contacts of a grain, at their weights [1/s²].
+struct GrainPlay {
+  double turn = 0;     ///< for every unit by which all directions are off
+  double counted = 0;  ///< to be added to λmax(S_i) of the present directions for a bound about those counted
+  double ahead = 0;    ///< … for one that holds until the next check
+};
+/// `met`: of every spring.
+std::vector<GrainPlay> plays_of(const Sides& sides, const std::vector<double>& t, std::span<const SpringMotion> met);
+
+}  // namespace eg
