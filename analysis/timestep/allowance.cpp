@@ -26,9 +26,9 @@ OverlapGrowth foreseen(const State& state, double time, double slack) {
 }
 
 OverlapForecast with_room(const StandingBound& bound, const OverlapForecast& f, const ContactPoint& p, double slack,
-                          double usual) {
+                          double usual, double up_to) {
   const double most = std::max(bound.grain[p.i], p.j == no_index ? 0.0 : bound.grain[p.j]);
-  const double stiffer = 0.9 * bound.value / most;
+  const double stiffer = up_to * bound.value / most;
   if (p.geometry.overlap + f.growth <= 0) return f;
   const double roomy = std::clamp(stiffer * stiffer - 1, slack, most_slack);
   const double more = std::max(roomy * std::max(0.0, p.geometry.overlap),

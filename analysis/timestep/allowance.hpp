@@ -7,11 +7,11 @@ namespace eg {
 /// Overlaps pressed further by the motion of the time to come, and larger by a share `slack`.
 OverlapForecast with_slack(OverlapForecast f, const ContactPoint& p, double slack);
 OverlapGrowth foreseen(const State& state, double time, double slack);
-/// With a slack that leaves the grains of the pair a tenth of the bound, if all their contacts (of Hertz) are given as
-/// much: it need not be looked at again for long. Where there is much room, a new contact may grow to what is usual
-/// [m].
+/// With a slack that leaves the grains of the pair below a share `up_to` of the bound, if all their contacts (of Hertz)
+/// are given as much: it need not be looked at again for long. Where there is much room, a new contact may grow to what
+/// is `usual` [m].
 OverlapForecast with_room(const StandingBound& bound, const OverlapForecast& f, const ContactPoint& p, double slack,
-                          double usual);
+                          double usual, double up_to);
 
 /// Half of what contacts are allowed on average [m].
 double usual_overlap(const StandingBound& bound);

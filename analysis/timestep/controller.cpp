@@ -17,10 +17,10 @@
 namespace eg {
 namespace {
 
-constexpr std::uint64_t nearest = 4, furthest = 512;      // steps from one check to the next
-constexpr std::uint64_t youngest = 1000, oldest = 16000;  // steps that a bound may live
-constexpr double slack = 0.05;                            // of an overlap: 2.5 % of the stiffness of a Hertz contact
-constexpr double least_room = 0.08, most_room = 0.35;
+constexpr std::uint64_t nearest = 4, furthest = 512;     // steps from one check to the next
+constexpr std::uint64_t youngest = 1000, oldest = 5000;  // steps that a bound may live
+constexpr double slack = 0.05;                           // of an overlap: 2.5 % of the stiffness of a Hertz contact
+constexpr double least_room = 0.03, most_room = 0.2;
 constexpr double gain = 1.04;  // of the step, from which on a renewal was worth its cost
 
 /// Steps to the next check.

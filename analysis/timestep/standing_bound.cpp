@@ -183,7 +183,7 @@ double StandingBounds::renew(State& state, const RenewOptions& options) {
       },
       [&](const ContactPoint& p) {
         const OverlapForecast f = forecast(state, p.i, p.j, p.geometry, options.time);
-        return warm ? with_room(bound, f, p, options.slack, usual) : with_slack(f, p, options.slack);
+        return warm ? with_room(bound, f, p, options.slack, usual, 0.7) : with_slack(f, p, options.slack);
       });
   network.springs.insert(network.springs.end(), couples.begin(), couples.end());
   met.insert(met.end(), bent.begin(), bent.end());
@@ -303,7 +303,7 @@ void StandingBounds::find_beyond(const State& state, const ContactSelection& sel
         const double kept = allowed(bound, p) - p.geometry.overlap;
         OverlapForecast f = forecast(state, p.i, p.j, p.geometry, time);
         if (f.growth <= kept) return OverlapForecast{kept};
-        f = with_room(bound, f, p, slack, usual);
+        f = with_room(bound, f, p, slack, usual, 0.9);
         f.growth = std::max(f.growth, kept), f.driven = std::max(f.driven, kept);
         return f;
       });
