@@ -27,6 +27,7 @@ Engine::Engine(const Scene& scene, State& state, bool scalar) : scene_(scene), s
   if (listed.history_size == size && listed.history_vectors == loop_->history_vectors() &&
       listed.tail_vectors == tail && !state_.list.begin.empty()) {  // goes on
     refresh_workspace();
+    blocks_.reset(state_), blocks_.measure(state_);
     return;
   }
   state_.contacts = {}, state_.wall_contacts = {}, state_.list = {};  // what another law left means nothing here
@@ -36,6 +37,7 @@ Engine::Engine(const Scene& scene, State& state, bool scalar) : scene_(scene), s
   rebuild_neighbours(state_, skin, contact_skin);
   lay_membrane(scene_, state_);
   refresh_workspace();
+  blocks_.reset(state_);
   forces(0, TallyLevel::works);
 }
 
@@ -70,7 +72,8 @@ void Engine::bond(const BondSpec& spec) {
   if (spec.gap > contact_skin) {
     rebuild_neighbours(state_, std::max(skin, 1.5 * spec.gap), spec.gap);
     state_.list.skin = skin, state_.list.contact_skin = contact_skin;
-    refresh_workspace(), travelled_ = 0;
+    refresh_workspace();
+    blocks_.reset(state_);
     forces(0, TallyLevel::works);
   }
   for (const std::size_t c : pairs_to_bond(state_, spec, scene_.seed)) {
@@ -158,13 +161,15 @@ void Engine::drift() {
   const double dt = state_.dt;
   if (scene_.energy) state_.ledger.boundary += 0.5 * applied_work(state_, dt);  // the other half: forces()
   for (const auto& g : state_.glued) state_.grains.velocity[g.grain].set(state_.bodies[g.body].velocity);
-  travelled_ += (travelled_ * norm(state_.cell.rate) + eg::drift(state_, dt)) * dt;
-  if (used_skin(state_, travelled_) > 0.999 * state_.list.contact_skin) {  // rounding aside, the bound tells
+  eg::drift(state_, dt, blocks_);
+  const Travel bound = blocks_.travel();
+  if (outdated(state_, {1.001 * bound.most, 1.001 * bound.approach})) {  // rounding aside, the bound tells
     const double begin = omp_get_wtime();
-    travelled_ = displacement(state_);
-    if (update_lists(state_, travelled_)) {
+    blocks_.measure(state_);
+    if (update_lists(state_, blocks_.travel(), list_scratch_)) {
       lay_membrane(scene_, state_);
-      refresh_workspace(), travelled_ = 0;
+      refresh_workspace();
+      blocks_.reset(state_);
     }
     upkeep_ += omp_get_wtime() - begin;
   }

@@ -2,6 +2,7 @@
 // One explicit step: drift, lists, forces and kick. Knows nothing of stages, files or how the step was chosen.
 #include "dynamics/force_loop.hpp"
 #include "dynamics/integrate.hpp"
+#include "search/neighbours.hpp"
 
 namespace eg {
 
@@ -71,7 +72,8 @@ class Engine {
   std::vector<Index> glued_to_;  ///< body of every grain, or none; empty when nothing is glued
   bool weigh_anew_ = false;  ///< stiffness against glued grains is worked out now and then, and when grains were glued
   std::vector<std::pair<std::size_t, Index>> glued_rows_;  ///< rows of the workspace that add up to what a body feels
-  double travelled_ = 1e300;  ///< bound of displacement() [m]; the true one is worked out when the bound calls for it
+  ListScratch list_scratch_;
+  Blocks blocks_;  ///< how far grains have moved since contacts were refreshed, at most
 };
 
 /// Stress from the last step's contacts: virial over volume, compression positive [Pa] (2D: N/m).

@@ -8,8 +8,6 @@ namespace {
 
 constexpr std::size_t chunk = Contacts::chunk;
 
-std::size_t chunks_of(std::size_t n) { return (n + chunk - 1) / chunk; }
-
 Double4& vector(Quad& q) { return *reinterpret_cast<Double4*>(&q); }
 
 // A row is one quad (velocity), or two side by side (velocity | spin): V is Double4 or Double8.
@@ -137,40 +135,27 @@ static void move_bodies(State& state, double dt) {
   }
 }
 
-double drift(State& state, double dt) {
+void drift(State& state, double dt, Blocks& blocks) {
   auto& g = state.grains;
   const Mat3 stretch = state.cell.deform(dt);
   const Affine<Double4> l(stretch);
   state.cell.origin += stretch * state.cell.origin;
-  const std::size_t chunks = chunks_of(g.size());
-  double fastest = 0;
-#pragma omp parallel for schedule(static) reduction(max : fastest) if (chunks >= Contacts::worth_threads)
-  for (std::size_t k = 0; k < chunks; ++k) {
-    Double4 most{};  // of each component: their sum is a bound
-    for (std::size_t i = k * chunk; i < std::min(g.size(), (k + 1) * chunk); ++i) {
+#pragma omp parallel for schedule(static) if (g.size() >= Contacts::worth_threads * chunk)
+  for (std::size_t b = 0; b < blocks.count(); ++b) {
+    Double4 low = Double4{} + INFINITY, high = Double4{} - INFINITY;
+    for (std::size_t i = blocks.begin(b); i < blocks.end(b, g.size()); ++i) {
       Double4& x = vector(g.position[i]);
-      const Double4 v = vector(g.velocity[i]), square = v * v;
+      const Double4 v = vector(g.velocity[i]);
       Double4 change = v * dt + l * x;
       change[3] = 0;
       x += change;
-      most = square > most ? square : most;
+      low = v < low ? v : low, high = v > high ? v : high;
     }
-    fastest = std::max(fastest, std::sqrt(total(most)));
+    low[3] = high[3] = 0;
+    blocks.move(b, low * dt, high * dt);
   }
+  blocks.deform(state.cell.rate, dt);
   move_bodies(state, dt);
-  return fastest;
-}
-
-double displacement(const State& state) {
-  const auto& x = state.grains.position;
-  const Mat3 f = state.cell.h * inverse(state.list.reference_cell);
-  double most = 0;
-#pragma omp parallel for schedule(static) reduction(max : most) if (chunks_of(x.size()) >= Contacts::worth_threads)
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const Vec3 u = x[i].vec() - f * state.list.reference[i];
-    most = std::max(most, dot(u, u));
-  }
-  return std::sqrt(most);
 }
 
 void kick_chunk(State& state, ForceWorkspace& work, std::size_t k, double dt, const KickOptions& options, bool works) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <span>
 
@@ -38,6 +39,8 @@ Frame make_frame(const Grains& grains, const Cell& cell, double least_extent) {
   return {origin, inverse(h), cell.periodic, {box.width(0), box.width(1), box.width(2)}};
 }
 
+using Place = std::array<int, 3>;  // of a cell along each axis
+
 struct Level {
   double largest = 0;  // radius [m]
   std::array<int, 3> n{1, 1, 1};
@@ -50,9 +53,11 @@ struct Level {
                static_cast<std::size_t>(n[0]) +
            static_cast<std::size_t>(a);
   }
+  Place place(std::size_t cell) const {
+    const auto nx = static_cast<std::size_t>(n[0]), ny = static_cast<std::size_t>(n[1]);
+    return {static_cast<int>(cell % nx), static_cast<int>(cell / nx % ny), static_cast<int>(cell / nx / ny)};
+  }
 };
-
-using Place = std::array<int, 3>;
 
 Place place(const Frame& f, const Level& level, const Vec3& x) {
   const Vec3 s = f.to_fractional * (x - f.origin);
@@ -139,19 +144,92 @@ void around(const Frame& frame, const Level& level, const Place& p, F&& f) {
     }
 }
 
-/// Calls f(grain) for the grains of a run whose surfaces lie within `reach` of x.
+/// Lane k as bit k.
+unsigned bits(Mask m) {
+  if constexpr (sizeof(Mask) == 1) return std::bit_cast<std::array<std::uint8_t, sizeof(Mask)>>(m)[0];
+  unsigned all = 0;
+  for (std::size_t k = 0; k < Batch::lanes; ++k) all |= lane(m, k) ? 1u << k : 0u;
+  return all;
+}
+
+/// Items of a run of cells.
+struct Items {
+  std::size_t begin, end;
+  std::uint8_t image;
+  Run::Side side;
+  Items(const Level& level, const Run& run)
+      : begin(level.begin[level.cell(run.begin, run.row, run.layer)]),
+        end(level.begin[level.cell(run.end - 1, run.row, run.layer) + 1]),
+        image(run.image),
+        side(run.side) {}
+};
+
+/// Calls f(grain) for the items whose surfaces lie within `reach` of x.
 template <class F>
-void visit(const Level& level, const Run& run, const Vec3& x, double reach, F&& f) {
-  const std::size_t end = level.begin[level.cell(run.end - 1, run.row, run.layer) + 1];
-  for (std::size_t m = level.begin[level.cell(run.begin, run.row, run.layer)]; m < end; m += Batch::lanes) {
+EG_INLINE void visit(const Level& level, const Items& items, const Vec3& x, double reach, F&& f) {
+  for (std::size_t m = items.begin; m < items.end; m += Batch::lanes) {
     const Batch dx = load_lanes(&level.x[m]) - Batch(x.x), dy = load_lanes(&level.y[m]) - Batch(x.y),
                 dz = load_lanes(&level.z[m]) - Batch(x.z), far = load_lanes(&level.r[m]) + Batch(reach);
-    const Mask near = dx * dx + dy * dy + dz * dz < far * far;
-    if (!any(near)) continue;
-    for (std::size_t k = 0; k < std::min(Batch::lanes, end - m); ++k)
-      if (lane(near, k)) f(level.items[m + k]);
+    unsigned hits = bits(dx * dx + dy * dy + dz * dz < far * far);
+    if (items.end - m < Batch::lanes) hits &= (1u << (items.end - m)) - 1;
+    for (; hits != 0; hits &= hits - 1) f(level.items[m + static_cast<std::size_t>(std::countr_zero(hits))]);
   }
 }
+
+/// Some cells of a level.
+struct Task {
+  std::size_t level, begin, end;
+};
+
+/// Searches for the partners of the grains of some cells.
+class Search {
+ public:
+  Search(const Grains& grains, const Cell& cell, const Frame& frame, const std::vector<Level>& levels, double skin)
+      : grains_(grains), frame_(frame), levels_(levels), skin_(skin) {
+    for (std::size_t c = 0; c < Cell::images; ++c) shift_[c] = cell.shift(static_cast<std::uint8_t>(c));
+  }
+
+  /// Each pair once: of one level, from the cell that comes first, or, where cells are too few for that to mean
+  /// anything, from the grain with the lower number; of two levels, from the smaller grain.
+  void run(const Task& task, std::vector<NearPair>& found) const {
+    const Level& level = levels_[task.level];
+    std::vector<Items> near;
+    for (std::size_t c = task.begin; c < task.end; ++c) {
+      if (level.begin[c] == level.begin[c + 1]) continue;
+      near.clear();
+      around(frame_, level, level.place(c), [&](const Run& run) {
+        if (!level.wide || run.side != Run::Side::before) near.emplace_back(level, run);
+      });
+      for (std::size_t m = level.begin[c]; m < level.begin[c + 1]; ++m) {
+        const Index i = level.items[m];
+        for (const Items& items : near) partners(level, items, i, !level.wide || items.side != Run::Side::after, found);
+        for (std::size_t l = task.level + 1; l < levels_.size(); ++l) {
+          const Level& upper = levels_[l];
+          if (!upper.items.empty())
+            around(frame_, upper, place(frame_, upper, grains_.position[i].vec()),
+                   [&](const Run& run) { partners(upper, Items(upper, run), i, false, found); });
+        }
+      }
+    }
+  }
+
+ private:
+  /// `lower`: only those with a higher number, or the grain itself in a later image.
+  void partners(const Level& level, const Items& items, Index i, bool lower, std::vector<NearPair>& found) const {
+    const Quad& a = grains_.position[i];
+    visit(level, items, a.vec() - shift_[items.image], a.w + skin_, [&](Index j) {
+      if (lower && (j < i || (j == i && items.image <= Cell::home))) return;
+      found.push_back(i <= j ? NearPair{i, j, items.image}
+                             : NearPair{j, i, static_cast<std::uint8_t>(26 - items.image)});
+    });
+  }
+
+  const Grains& grains_;
+  const Frame& frame_;
+  const std::vector<Level>& levels_;
+  double skin_;
+  std::array<Vec3, Cell::images> shift_;
+};
 
 }  // namespace
 
@@ -182,36 +260,15 @@ std::vector<NearPair> find_pairs(const Grains& grains, const Cell& cell, double 
   for (std::size_t l = 0; l < levels.size(); ++l)
     if (!members[l].empty()) fill(levels[l], frame, grains, members[l], skin);
 
-  std::array<Vec3, Cell::images> shift;
-  for (std::size_t c = 0; c < Cell::images; ++c) shift[c] = cell.shift(static_cast<std::uint8_t>(c));
-  constexpr std::size_t chunk = 4096;
-  const std::size_t chunks = (grains.size() + chunk - 1) / chunk;
-  std::vector<std::vector<NearPair>> found(chunks);
-#pragma omp parallel for schedule(dynamic) if (chunks > 1)
-  for (std::size_t k = 0; k < chunks; ++k)
-    for (std::size_t i = k * chunk; i < std::min(grains.size(), (k + 1) * chunk); ++i) {
-      const Quad& a = grains.position[i];
-      const auto own = class_of(a.w);
-      const auto take = [&](Index j, std::uint8_t image) {
-        const auto ii = static_cast<Index>(i);
-        found[k].push_back(ii <= j ? NearPair{ii, j, image} : NearPair{j, ii, static_cast<std::uint8_t>(26 - image)});
-      };
-      for (std::size_t l = own; l < levels.size(); ++l) {
-        const Level& level = levels[l];
-        if (members[l].empty()) continue;
-        around(frame, level, place(frame, level, a.vec()), [&](const Run& run) {
-          // Each pair once: of one level, in the cell that comes first, or, where cells are too few for that to mean
-          // anything, from the grain with the lower number; of two levels, from the smaller grain.
-          const bool halved = l == own && level.wide;
-          if (halved && run.side == Run::Side::before) return;
-          const bool lower = l == own && !(halved && run.side == Run::Side::after);
-          visit(level, run, a.vec() - shift[run.image], a.w + skin, [&](Index j) {
-            if (lower && (j < i || (j == i && run.image <= Cell::home))) return;
-            take(j, run.image);
-          });
-        });
-      }
-    }
+  std::vector<Task> tasks;
+  constexpr std::size_t cells = 1024;
+  for (std::size_t l = 0; l < levels.size(); ++l)
+    for (std::size_t c = 0; c + 1 < levels[l].begin.size(); c += cells)
+      tasks.push_back({l, c, std::min(c + cells, levels[l].begin.size() - 1)});
+  const Search search(grains, cell, frame, levels, skin);
+  std::vector<std::vector<NearPair>> found(tasks.size());
+#pragma omp parallel for schedule(dynamic) if (tasks.size() > 1)
+  for (std::size_t k = 0; k < tasks.size(); ++k) search.run(tasks[k], found[k]);
   std::vector<NearPair> all;
   std::size_t total = 0;
   for (const auto& f : found) total += f.size();

@@ -49,16 +49,14 @@ struct Key {
   friend auto operator<=>(const Key&, const Key&) = default;
 };
 
-/// After wrapping, contacts of one i may be out of order by image only when one pair has several; sort all keys then.
-std::vector<std::size_t> sorted_order(const Contacts& c) {
-  std::vector<std::size_t> order;
-  order.reserve(c.size());
+/// Places of the contacts in the order of their keys: after wrapping and sorting of grains it is another.
+void sorted_order(const Contacts& c, std::vector<Index>& order) {
+  order.clear();
   for (std::size_t k = 0; k < c.size(); ++k)
-    if (!c.is_padding(k)) order.push_back(k);
-  const auto key = [&](std::size_t k) { return Key{c.i[k], c.j[k], c.image_of(k)}; };
-  const auto less = [&](std::size_t a, std::size_t b) { return key(a) < key(b); };
+    if (!c.is_padding(k)) order.push_back(static_cast<Index>(k));
+  const auto key = [&](Index k) { return Key{c.i[k], c.j[k], c.image_of(k)}; };
+  const auto less = [&](Index a, Index b) { return key(a) < key(b); };
   if (!std::is_sorted(order.begin(), order.end(), less)) std::sort(order.begin(), order.end(), less);
-  return order;
 }
 
 void fill_rows(NeighbourList& list, std::vector<NearPair>& pairs, std::size_t grains, bool periodic) {
@@ -81,84 +79,121 @@ void fill_rows(NeighbourList& list, std::vector<NearPair>& pairs, std::size_t gr
   }
 }
 
-/// Contacts of one chunk, in order, with the place of their history in the old list (or none).
-struct Row {
-  Key key;
-  std::size_t old;
-};
+/// Pairs of the list nearer than the skin of the contacts, and bonded ones however far they have moved apart, of the
+/// chunk's grains, in order; each with its place among the contacts so far. Returns how many.
+std::size_t find_entries(const State& state, std::size_t chunk, const std::array<Vec3, Cell::images>& shift,
+                         const std::vector<Index>& order, ListScratch::Entry* out) {
+  const NeighbourList& list = state.list;
+  const Contacts& old = state.contacts;
+  const bool periodic = !list.image.empty();
+  const std::size_t low = chunk * Contacts::chunk, high = std::min(state.grains.size(), low + Contacts::chunk);
+  auto* const first = out;
+  auto o = std::ranges::lower_bound(order, low, {}, [&](Index c) { return std::size_t{old.i[c]}; });
+  const auto keep_bonded = [&](Index c) {
+    if (old.is_bonded(c)) *out++ = {old.i[c], old.j[c], c, old.image_of(c)};
+  };
+  for (std::size_t i = low; i < high; ++i) {
+    const Quad a = state.grains.position[i];
+    auto* const row = out;  // of this grain, old places still unknown
+    for (std::size_t p = list.begin[i]; p < list.begin[i + 1]; ++p) {
+      const Index j = list.j[p];
+      const std::uint8_t image = periodic ? list.image[p] : Cell::home;
+      const Quad& b = state.grains.position[j];
+      const Vec3 branch = b.vec() + shift[image] - a.vec();
+      const double reach = a.w + b.w + list.contact_skin;
+      *out = {static_cast<Index>(i), j, no_index, image};
+      out += dot(branch, branch) < reach * reach;  // which way it goes is anybody's guess: no branch
+    }
+    auto* const end = out;
+    auto* next = row;
+    for (; o != order.end() && old.i[*o] == i; ++o) {
+      const auto key = Key{old.i[*o], old.j[*o], old.image_of(*o)};
+      while (next != end && Key{next->i, next->j, next->image} < key) ++next;
+      if (next != end && Key{next->i, next->j, next->image} == key)
+        next++->old = *o;
+      else
+        keep_bonded(*o);
+    }
+    if (out != end)
+      std::inplace_merge(row, end, out, [](const auto& x, const auto& y) {
+        return Key{x.i, x.j, x.image} < Key{y.i, y.j, y.image};
+      });
+  }
+  return static_cast<std::size_t>(out - first);
+}
+
+/// A contact of a grain with itself in the home image.
+void put_padding(Index grain, std::size_t c, Contacts& fresh) {
+  fresh.i[c] = fresh.j[c] = grain;
+  if (!fresh.image.empty()) fresh.image[c] = Cell::home;
+  if (!fresh.friction.empty()) fresh.friction[c] = 1;
+  for (std::size_t h = 0; h < fresh.history_size; ++h) fresh.history_at(c, h) = 0;
+}
+
+/// Writes entry c of the new contacts, with what is known of the pair.
+void put_contact(const State& state, const ListScratch::Entry& entry, std::size_t c, Contacts& fresh) {
+  const Contacts& old = state.contacts;
+  fresh.i[c] = entry.i, fresh.j[c] = entry.j;
+  if (!fresh.image.empty()) fresh.image[c] = entry.image;
+  const bool known = entry.old != no_index;
+  if (!fresh.friction.empty())
+    fresh.friction[c] =
+        known && !old.friction.empty()
+            ? old.friction[entry.old]
+            : friction_factor(state.friction_scatter, state.grains.id[entry.i], state.grains.id[entry.j]);
+  if (fresh.history_size == 0) return;
+  constexpr std::size_t lanes = Contacts::lanes;
+  double* to = &fresh.history_at(c, 0);
+  const double* from =
+      known ? old.history.data() + (entry.old / lanes * old.history_size) * lanes + entry.old % lanes : nullptr;
+  for (std::size_t h = 0; h < fresh.history_size; ++h) to[h * lanes] = known ? from[h * lanes] : 0.0;
+}
 
 }  // namespace
 
-void refresh_contacts(State& state) {
-  const auto& list = state.list;
-  Contacts& old = state.contacts;
+void refresh_contacts(State& state, ListScratch& scratch) {
+  const NeighbourList& list = state.list;
+  const Contacts& old = state.contacts;
   const std::size_t n = state.grains.size(), chunks = (n + Contacts::chunk - 1) / Contacts::chunk;
   const bool periodic = !list.image.empty();
-  const auto order = sorted_order(old);
+  sorted_order(old, scratch.order);
   std::array<Vec3, Cell::images> shift;
   for (std::size_t c = 0; c < Cell::images; ++c) shift[c] = state.cell.shift(static_cast<std::uint8_t>(c));
 
-  const auto key_of = [&](std::size_t c) { return Key{old.i[c], old.j[c], old.image_of(c)}; };
-  const auto keep_bonded = [&](std::vector<Row>& to, std::size_t c) {  // however far the grains have moved apart
-    if (old.is_bonded(c)) to.push_back({key_of(c), c});
+  const auto room = [&](std::size_t grain) {  // where entries from this grain on may begin, bonded ones included
+    const std::size_t bonded =
+        old.bond_value == 0
+            ? 0
+            : static_cast<std::size_t>(
+                  std::ranges::lower_bound(scratch.order, grain, {}, [&](Index c) { return std::size_t{old.i[c]}; }) -
+                  scratch.order.begin());
+    return list.begin[std::min(n, grain)] + bonded + grain / Contacts::chunk;
   };
-  std::vector<std::vector<Row>> rows(chunks);
+  scratch.entries.resize(room(chunks * Contacts::chunk));
+  scratch.count.resize(chunks);
 #pragma omp parallel for schedule(dynamic) if (chunks >= Contacts::worth_threads)
-  for (std::size_t k = 0; k < chunks; ++k) {
-    const std::size_t low = k * Contacts::chunk, high = std::min(n, low + Contacts::chunk);
-    auto o =
-        std::lower_bound(order.begin(), order.end(), low, [&](std::size_t c, std::size_t g) { return old.i[c] < g; });
-    for (std::size_t i = low; i < high; ++i) {
-      const Quad a = state.grains.position[i];
-      for (std::size_t p = list.begin[i]; p < list.begin[i + 1]; ++p) {
-        const Index j = list.j[p];
-        const std::uint8_t image = periodic ? list.image[p] : Cell::home;
-        const Quad& b = state.grains.position[j];
-        const Vec3 branch = b.vec() + shift[image] - a.vec();
-        const double reach = a.w + b.w + list.contact_skin;
-        if (dot(branch, branch) >= reach * reach) continue;
-        const Key key{static_cast<Index>(i), j, image};
-        while (o != order.end() && key_of(*o) < key) keep_bonded(rows[k], *o++);
-        const bool known = o != order.end() && key_of(*o) == key;
-        rows[k].push_back({key, known ? *o++ : ~std::size_t{0}});
-      }
-      while (o != order.end() && old.i[*o] == i) keep_bonded(rows[k], *o++);
-    }
-  }
+  for (std::size_t k = 0; k < chunks; ++k)
+    scratch.count[k] = find_entries(state, k, shift, scratch.order, scratch.entries.data() + room(k * Contacts::chunk));
 
-  Contacts fresh;
+  constexpr std::size_t lanes = Contacts::lanes;
+  Contacts& fresh = scratch.contacts;
   fresh.history_size = old.history_size, fresh.history_vectors = old.history_vectors,
   fresh.tail_vectors = old.tail_vectors, fresh.bond_value = old.bond_value;
   fresh.chunk_begin.assign(1, 0);
-  constexpr std::size_t lanes = Contacts::lanes;
-  for (const auto& r : rows)
-    fresh.chunk_begin.push_back(fresh.chunk_begin.back() + (r.size() + lanes - 1) / lanes * lanes);
+  for (const std::size_t count : scratch.count)
+    fresh.chunk_begin.push_back(fresh.chunk_begin.back() + (count + lanes - 1) / lanes * lanes);
   const std::size_t total = fresh.chunk_begin.back();
   fresh.i.resize(total), fresh.j.resize(total), fresh.image.resize(periodic ? total : 0);
-  fresh.history.assign(total * fresh.history_size, 0.0);
-  const bool varies = state.friction_scatter.deviation > 0;
-  fresh.friction.assign(varies ? total : 0, 1.0);
+  fresh.history.resize(total * fresh.history_size);
+  fresh.friction.resize(state.friction_scatter.deviation > 0 ? total : 0);
 #pragma omp parallel for schedule(dynamic) if (chunks >= Contacts::worth_threads)
   for (std::size_t k = 0; k < chunks; ++k) {
+    const auto* entry = scratch.entries.data() + room(k * Contacts::chunk);
     std::size_t c = fresh.chunk_begin[k];
-    for (const auto& row : rows[k]) {
-      fresh.i[c] = row.key.i, fresh.j[c] = row.key.j;
-      if (periodic) fresh.image[c] = row.key.image;
-      if (varies)
-        fresh.friction[c] =
-            row.old != ~std::size_t{0} && !old.friction.empty()
-                ? old.friction[row.old]
-                : friction_factor(state.friction_scatter, state.grains.id[row.key.i], state.grains.id[row.key.j]);
-      if (row.old != ~std::size_t{0})
-        for (std::size_t h = 0; h < fresh.history_size; ++h) fresh.history_at(c, h) = old.history_at(row.old, h);
-      ++c;
-    }
-    for (; c < fresh.chunk_begin[k + 1]; ++c) {
-      fresh.i[c] = fresh.j[c] = rows[k].back().key.i;  // padding
-      if (periodic) fresh.image[c] = Cell::home;
-    }
+    for (const auto* end = entry + scratch.count[k]; entry != end; ++entry) put_contact(state, *entry, c++, fresh);
+    for (; c < fresh.chunk_begin[k + 1]; ++c) put_padding(entry[-1].i, c, fresh);
   }
-  state.contacts = std::move(fresh);
+  std::swap(state.contacts, fresh);
   state.list.reference.resize(n);
   for (std::size_t i = 0; i < n; ++i) state.list.reference[i] = state.grains.position[i].vec();
   state.list.reference_cell = state.cell.h;
@@ -167,7 +202,7 @@ void refresh_contacts(State& state) {
   refresh_wall_contacts(state);
 }
 
-void rebuild_neighbours(State& state, double skin, double contact_skin) {
+void rebuild_neighbours(State& state, double skin, double contact_skin, ListScratch& scratch) {
   wrap(state);
   if (state.list.builds % sort_period == 0) sort_grains(state);
   auto pairs = find_pairs(state.grains, state.cell, skin);
@@ -176,36 +211,62 @@ void rebuild_neighbours(State& state, double skin, double contact_skin) {
   fill_rows(list, pairs, state.grains.size(), state.cell.any_periodic());
   list.longest = 0;
   for (const auto& p : state.grains.position) list.longest = std::max(list.longest, 2 * p.w + skin);
-  refresh_contacts(state);
+  refresh_contacts(state, scratch);
   list.used = 0;
   ++list.builds;
 }
 
-double used_skin(const State& state, double displacement) {
+namespace {
+
+/// By how much two surfaces within the longest reach have come nearer beside their own travel [m].
+double carried(const State& state) {
   const Mat3 strain = state.cell.h * inverse(state.list.reference_cell) - Mat3::identity();
-  double walls = 0;
-  for (const auto& w : state.walls) walls = std::max(walls, w.moved);
-  return 2 * displacement + norm(strain) * state.list.longest + walls + state.list.grown;
+  return norm(strain) * state.list.longest + state.list.grown;
 }
 
-/// A wide skin makes the force loop take pairs that do not touch, a narrow one makes refreshes frequent; a refresh
-/// costs about three steps.
+}  // namespace
+
+bool outdated(const State& state, const Travel& travel) {
+  const auto& list = state.list;
+  const double beside = carried(state);
+  if (travel.approach + beside > list.contact_skin || travel.most > list.longest) return true;
+  if (state.walls.empty()) return false;
+  double walls = 0;
+  for (const auto& w : state.walls) walls = std::max(walls, w.moved);
+  return travel.most + beside + walls > wall_skin(list);
+}
+
+/// A wide skin makes the force loop take pairs that do not touch, a narrow one makes refreshes frequent.
 static void fit_contact_skin(NeighbourList& list, std::uint64_t life) {
   if (life < 150) list.contact_skin = std::min(1.25 * list.contact_skin, 0.25 * list.skin);
   if (life > 600) list.contact_skin = std::max(0.8 * list.contact_skin, 0.01 * list.skin);
 }
 
-bool update_lists(State& state, double displacement) {
+/// Likewise for the pairs that refreshes look at. Grains that move fast against each other use the skin up in a few
+/// steps: a wider one, as wide as the cell allows, spares more rebuilds than it costs.
+static double fitted_skin(const State& state, std::uint64_t life) {
+  const auto& list = state.list;
+  const double usual = default_skins(state)[0];
+  if (life > 300 || list.contact_skin < 0.24 * list.skin) return std::max(0.8 * list.skin, std::min(list.skin, usual));
+  double widest = 5 * usual;
+  for (int k = 0; k < 3; ++k)
+    if (state.cell.periodic[static_cast<std::size_t>(k)])
+      widest = std::min(widest, 0.5 * (state.cell.width(k) - (list.longest - list.skin)));
+  return std::max(list.skin, std::min(1.25 * list.skin, widest));
+}
+
+bool update_lists(State& state, const Travel& travel, ListScratch& scratch) {
   auto& list = state.list;
-  const double used = used_skin(state, displacement);
-  if (used <= list.contact_skin) return false;
-  fit_contact_skin(list, state.step - list.refreshed);
+  if (!outdated(state, travel)) return false;
+  const double used = travel.approach + carried(state);
+  const std::uint64_t life = state.step - list.refreshed;
+  fit_contact_skin(list, life);
   list.refreshed = state.step;
-  if (list.used + used > list.skin - list.contact_skin) {
-    rebuild_neighbours(state, list.skin, list.contact_skin);
+  if (list.used + used > list.skin - list.contact_skin || travel.most > list.longest) {
+    rebuild_neighbours(state, fitted_skin(state, life), list.contact_skin, scratch);
   } else {
     list.used += used;
-    refresh_contacts(state);
+    refresh_contacts(state, scratch);
   }
   return true;
 }

@@ -53,7 +53,7 @@ WallContact contact(const State& state, Index grain, Index wall) {
 void add_if_near(const State& state, Index wall_index, Index grain, std::vector<WallContact>& fresh) {
   const Wall& wall = state.walls[wall_index];
   const Quad& p = state.grains.position[grain];
-  const double skin = state.list.contact_skin;
+  const double skin = wall_skin(state.list);
   if (std::abs(off_window(wall, p.vec())) > p.w + skin) return;
   const double overlap = grain_surface(state, wall, p.vec(), p.w, Arms::middle).overlap;
   if (overlap > -skin) fresh.push_back(contact(state, grain, wall_index));
@@ -88,7 +88,7 @@ bool within(const Extent& e, const Vec3& x, double margin) {
 void add_near_part(const State& state, Index w, const ByX& by_x, std::vector<WallContact>& fresh) {
   const Wall& wall = state.walls[w];
   const Extent extent = extent_of(wall);
-  const double skin = state.list.contact_skin;
+  const double skin = wall_skin(state.list);
   const std::size_t before = fresh.size();
   by_x.between(extent.low.x, extent.high.x, skin, [&](Index g) {
     const Quad& p = state.grains.position[g];
