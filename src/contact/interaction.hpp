@@ -91,7 +91,7 @@ EG_INLINE Vec<S> turn(const Vec<S>& old, const Vec<S>& n, const S& twist) {
 template <class S>
 struct Dashpot {
   S normal_ratio{}, shear_ratio{};  ///< ξn, ξs [-]
-  S mass{};                         ///< m* = 1/(1/m_i + 1/m_j) [kg]
+  S inverse_mass{};                 ///< 1/m* = 1/m_i + 1/m_j [1/kg]; 0 where neither can move: no dashpot
   S per_dt{};                       ///< 1/Δt of the increment [1/s]
 };
 
@@ -127,12 +127,16 @@ EG_INLINE ContactForce<S> interact(const typename Law::template Pair<S>& pair, c
   }
   if constexpr (HasCouples<Law>) out.couple = out.law.couple + g.n * out.law.torsion;
   if constexpr (damped) {
-    const S cn = S(2.0) * dashpot.normal_ratio * sqrt(dashpot.mass * out.law.normal.stiffness) * dashpot.per_dt;
+    const auto critical = [&](const S& stiffness) {  // 2√(m* k)/Δt [N/m]
+      return select(dashpot.inverse_mass > S(0.0), S(2.0) * root_of_ratio(stiffness, dashpot.inverse_mass), S(0.0)) *
+             dashpot.per_dt;
+    };
+    const S cn = dashpot.normal_ratio * critical(out.law.normal.stiffness);
     out.dashpot = g.n * select(touching, cn * inc.approach, S(0.0));
     if constexpr (Law::history_vectors >
                   0) {  // a sliding contact has no shear dashpot, or it would exceed Coulomb's limit
       const Vec<S> lost = out.law.unslipped - out.law.shear;
-      const S cs = S(2.0) * dashpot.shear_ratio * sqrt(dashpot.mass * out.law.normal.tangential) * dashpot.per_dt;
+      const S cs = dashpot.shear_ratio * critical(out.law.normal.tangential);
       const S stick = select(dot(lost, lost) > S(0.0), S(0.0), cs);
       const Vec<S> fs = inc.slip * select(touching, stick, S(0.0));
       out.dashpot -= fs;

@@ -60,49 +60,86 @@ struct PartialSlip {
     return inverse_limit * (S(1.0) - S(0.5) * c.reversed);
   }
 
-  /// Effect of N + ΔN, grow = µΔN, on curve and force.
+  /// θ³, and 1/θ: one cube root serves a contact for the whole step, unless it turns.
   template <class S>
-  EG_INLINE static void press(Curve<S>& c, Vec<S>& shear, const S& grow, const S& inverse_limit) {
-    const Vec<S> away = shear - c.origin;
-    const S square = dot(away, away), inverse = inverse_length(square), distance = square * inverse;
-    const Vec<S> unit = away * inverse;
-    c.origin -= unit * (grow * c.reversed);
+  struct Share {
+    S cube, inverse;
+    EG_INLINE S value() const { return cube * inverse * inverse; }
+  };
+  /// θ³ at a distance |T − R| from the origin of the curve.
+  template <class S>
+  EG_INLINE static S cubed_share(const Curve<S>& c, const S& distance, const S& inverse_scale) {
+    return min(max(S(1.0) - (distance + c.stuck) * inverse_scale, S(1e-9)), S(1.0));
+  }
+  /// θ for another θ³, from one close by where it is: by the series of (1 + q)^(−1/3), exact to round-off for |q| ≤
+  /// 1e-3.
+  template <class S>
+  EG_INLINE static Share<S> moved_to(const S& cube, const Share<S>& from) {
+    const S q = (cube - from.cube) * (from.inverse * from.inverse * from.inverse);
+    const S series = S(1.0) - q * (S(1.0 / 3) - q * (S(2.0 / 9) - q * (S(14.0 / 81) - q * S(35.0 / 243))));
+    S inverse = select(cube < S(1.0), from.inverse * series, S(1.0));
+    const auto far = (max(q, -q) > S(1e-3)) & (cube < S(1.0));
+    if (any(far)) inverse = select(far, inverse_cube_root(cube), inverse);
+    return {cube, inverse};
+  }
+
+  /// T − R as a direction and a length, which may be < 0.
+  template <class S>
+  struct Way {
+    Vec<S> unit;
+    S length;
+  };
+
+  /// Effect of N + ΔN, grow = µΔN, on curve and force; gives θ and T − R after it.
+  template <class S>
+  EG_INLINE static Share<S> press(Curve<S>& c, Vec<S>& shear, Way<S>& away, const S& grow, const S& inverse_limit) {
+    const Vec<S> from = shear - c.origin;
+    const S square = dot(from, from), inverse = inverse_length(square), distance = square * inverse;
+    const S outward = grow * c.reversed, scale = inverse_scale(c, inverse_limit);
+    away.unit = from * inverse;
+    c.origin -= away.unit * outward;
     c.reach = select(c.reach > S(0.0), c.reach + grow * (S(1.0) + c.reversed), S(0.0));
     const S stuck = c.stuck + grow, lost = max(-stuck, S(0.0));
     c.stuck = max(stuck, S(0.0));
-    const S theta = stick_share(c, distance + grow * c.reversed - lost, inverse_scale(c, inverse_limit));
-    shear -= unit * min((S(1.0) - theta) * lost, distance);
+    Share<S> share;
+    share.cube = cubed_share(c, distance + outward - lost, scale), share.inverse = inverse_cube_root(share.cube);
+    const S drop = min((S(1.0) - share.value()) * lost, distance);
+    shear -= away.unit * drop;
+    away.length = select(square > S(1e-60), distance + outward - drop, S(0.0));
+    return share;
   }
 
-  /// θ at a distance |T − R| from the origin of the curve, E included.
+  /// T after the slip Δs, before Coulomb's limit. `pressed`, `away`: as press() left them.
   template <class S>
-  EG_INLINE static S stick_share(const Curve<S>& c, const S& distance, const S& inverse_scale) {
-    const S y = S(1.0) - (distance + c.stuck) * inverse_scale;
-    return cube_root(min(max(y, S(1e-9)), S(1.0)));
-  }
-
-  /// T after the slip Δs, before Coulomb's limit.
-  template <class S>
-  EG_INLINE static Vec<S> slide(Curve<S>& c, const Vec<S>& shear, const Vec<S>& slip, const S& k0, const S& limit,
-                                const S& inverse_limit) {
-    const Vec<S> from = shear - c.origin;
-    const S square = dot(from, from), inverse = inverse_length(square), whole = square * inverse;
-    const S along = dot(from, slip);
+  EG_INLINE static Vec<S> slide(Curve<S>& c, const Vec<S>& shear, const Way<S>& away, const Share<S>& pressed,
+                                const Vec<S>& slip, const S& k0, const S& limit, const S& inverse_limit) {
+    const S towards = dot(away.unit, slip), along = select(away.length < S(0.0), -towards, towards);
+    const S whole = max(away.length, -away.length);
     const auto turns = along < S(0.0);
     c.reach = select(turns, whole * (S(2.0) - c.reversed), c.reach);
     c.origin = select(turns, shear, c.origin);
     c.reversed = select(turns, S(1.0), c.reversed);
 
     const S distance = select(turns, S(0.0), whole), scale = inverse_scale(c, inverse_limit);
+    const Share<S> now = moved_to(cubed_share(c, distance, scale), pressed);
     const S step = root(max(dot(slip, slip), S(1e-60))), elastic = k0 * step;
     const S share = select(elastic > c.stuck, c.stuck * reciprocal(max(elastic, S(1e-200))), S(1.0));
-    const S theta = stick_share(c, distance, scale);
     c.stuck = max(c.stuck - elastic, S(0.0));
     const auto apart = distance > S(1e-12) * limit;
-    const S outward = select(apart, max(along, S(0.0)) * inverse, step) * (S(1.0) - share);
-    const S next = root(max(theta * theta - S(2.0 / 3.0) * k0 * outward * scale, S(1e-30)));
-    const S mean = S(2.0 / 3.0) * (theta * theta + theta * next + next * next) * reciprocal(theta + next);
+    const S outward = select(apart, max(along, S(0.0)), step) * (S(1.0) - share);
+    const S mean = mean_share(now, S(2.0 / 3.0) * k0 * outward * scale);
     return shear + slip * (k0 * (share + (S(1.0) - share) * mean));
+  }
+
+  /// Mean of θ over a slip by which θ² falls by `fall`: (2/3)(θ² + θθ' + θ'²)/(θ + θ'), or its series in fall/θ².
+  template <class S>
+  EG_INLINE static S mean_share(const Share<S>& from, const S& fall) {
+    const S theta = from.value(), p = fall * (from.inverse * from.inverse);
+    const S mean = theta * (S(1.0) - p * (S(1.0 / 4) + p * (S(1.0 / 24) + p * (S(1.0 / 64) + p * S(1.0 / 128)))));
+    const auto far = p > S(1e-3);
+    if (!any(far)) return mean;
+    const S next = root(max(theta * theta - fall, S(1e-30)));
+    return select(far, S(2.0 / 3.0) * (theta * theta + theta * next + next * next) * reciprocal(theta + next), mean);
   }
 
   /// Ends curves that have been followed to their end, or by sliding, and starts anew after pressing.
@@ -131,8 +168,9 @@ struct PartialSlip {
     Curve<S> curve{history_vector(h, 1), h[7], h[8], h[9]};
     const S limit = p.friction * n.force, inverse_limit = reciprocal(max(limit, S(1e-200)));
     Vec<S> shear = before;
-    press(curve, shear, p.friction * (n.force - h[6]), inverse_limit);
-    const Vec<S> trial = slide(curve, shear, strain.slip, n.tangential, limit, inverse_limit);
+    Way<S> away;
+    const auto pressed = press(curve, shear, away, p.friction * (n.force - h[6]), inverse_limit);
+    const Vec<S> trial = slide(curve, shear, away, pressed, strain.slip, n.tangential, limit, inverse_limit);
     shear = coulomb(trial, limit);
     close(curve, shear, trial, limit);
     set_history_vector(h, 0, shear), set_history_vector(h, 1, curve.origin);

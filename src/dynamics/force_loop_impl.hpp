@@ -161,8 +161,7 @@ class ForceLoopOf final : public ForceLoop {
     for (std::size_t h = 0; h < history.size(); ++h) history[h] = load_values<S>(stored + h * Contacts::lanes);
     Dashpot<S> dashpot;
     if constexpr (damped)
-      dashpot = {S(options.normal_ratio), S(options.shear_ratio),
-                 select(inverse_mass > S(0.0), S(1.0) / inverse_mass, S(0.0)), S(dt > 0 ? 1 / dt : 0)};
+      dashpot = {S(options.normal_ratio), S(options.shear_ratio), inverse_mass, S(dt > 0 ? 1 / dt : 0)};
     auto pair =
         Law::template pair<S>(!state.grains.material.empty() ? constants<S>(state, c) : uniform, grain_sizes(ri, rj));
     if (Law::history_vectors > 0 && !list.friction.empty())
@@ -271,8 +270,7 @@ Tally ForceLoopOf<Law, rotation>::walls(State& state, ForceWorkspace& work, doub
     pair.friction *= c.friction;
     ContactHistory<Law, double> history;
     std::copy_n(c.history.begin(), history.size(), history.begin());
-    const Dashpot<double> dashpot{options.normal_ratio, options.shear_ratio, v.w > 0 ? 1 / v.w : 0,
-                                  dt > 0 ? 1 / dt : 0};
+    const Dashpot<double> dashpot{options.normal_ratio, options.shear_ratio, v.w, dt > 0 ? 1 / dt : 0};
     const auto f = interact<Law, true>(pair, g, inc, g.overlap > 0, history, dashpot);
     std::copy_n(history.begin(), history.size(), c.history.begin());
 
