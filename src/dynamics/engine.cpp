@@ -14,6 +14,12 @@
 
 namespace eg {
 
+/// Who made the engine may move grains yet: the first step has to look where they are.
+static void forget(Blocks& blocks) {
+  const Double4 anywhere = Double4{} + 1e100;  // [m]; its square is a number
+  if (blocks.count() > 0) blocks.move(0, -anywhere, anywhere);
+}
+
 Engine::Engine(const Scene& scene, State& state, bool scalar) : scene_(scene), state_(state) {
   state_.friction = friction_in_force(scene, state_);
   loop_ = make_force_loop(scene.contact.law, !has_friction(scene), state_.grains.rotates());
@@ -27,7 +33,8 @@ Engine::Engine(const Scene& scene, State& state, bool scalar) : scene_(scene), s
   if (listed.history_size == size && listed.history_vectors == loop_->history_vectors() &&
       listed.tail_vectors == tail && !state_.list.begin.empty()) {  // goes on
     refresh_workspace();
-    blocks_.reset(state_), blocks_.measure(state_);
+    blocks_.reset(state_);
+    forget(blocks_);
     return;
   }
   state_.contacts = {}, state_.wall_contacts = {}, state_.list = {};  // what another law left means nothing here
@@ -38,6 +45,7 @@ Engine::Engine(const Scene& scene, State& state, bool scalar) : scene_(scene), s
   lay_membrane(scene_, state_);
   refresh_workspace();
   blocks_.reset(state_);
+  forget(blocks_);
   forces(0, TallyLevel::works);
 }
 

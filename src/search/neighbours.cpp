@@ -229,7 +229,7 @@ double carried(const State& state) {
 bool outdated(const State& state, const Travel& travel) {
   const auto& list = state.list;
   const double beside = carried(state);
-  if (travel.approach + beside > list.contact_skin || travel.most > list.longest) return true;
+  if (!(travel.approach + beside <= list.contact_skin && travel.most <= list.longest)) return true;  // or no number
   if (state.walls.empty()) return false;
   double walls = 0;
   for (const auto& w : state.walls) walls = std::max(walls, w.moved);
