@@ -17,11 +17,7 @@ struct Budget {
   double step, frictionless, partial_slip, product, refresh;  // instructions a contact
 };
 
-#if defined(__AVX512F__)
 constexpr Budget budget{102, 67, 143, 43, 212};
-#else
-constexpr Budget budget{102, 67, 143, 43, 212};
-#endif
 
 /// 108 spheres, 648 contacts, all of which touch.
 Scene scene_with(const std::string& law) { return test::lattice_scene(law, "fcc", {3, 3, 3}, 1e-3); }
@@ -52,6 +48,7 @@ TEST(Budget, CountsInstructions) {
   EXPECT_LE(some, 1020u);
 }
 
+#if defined(__AVX512F__) && !defined(__clang__)  // what the budgets were measured with
 TEST(Budget, Step) { expect_within("step", step_of(scene_with("hertz-mindlin")), budget.step); }
 
 TEST(Budget, StepWithoutFrictionAndRotation) {
@@ -88,6 +85,7 @@ TEST(Budget, RefreshOfTheContacts) {
   const auto count = test::instructions_of([&] { refresh_contacts(state, scratch); });
   expect_within("refresh", per_contact(count, static_cast<double>(state.contacts.size())), budget.refresh);
 }
+#endif
 
 }  // namespace
 }  // namespace eg
