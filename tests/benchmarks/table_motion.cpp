@@ -69,7 +69,7 @@ void slope() {
   scene.gravity = {std::sin(angle), 0, -std::cos(angle)};
   WallSpec base;
   base.name = "base", base.normal = {0, 0, 1}, base.material = m.name;
-  scene.boundary.bodies = {{.name = "base", .group = "", .velocity = {}}};
+  scene.boundary.bodies = {{.name = "base", .group = "", .velocity = {}, .material = ""}};
   scene.boundary.walls = {base};
   Random random(1);
   Packing packing = make_cloud(std::vector<double>(32000, 0.5), {3, 0.5, {40, 20, 42}}, random);

@@ -111,7 +111,7 @@ TEST(MakeState, BoxBecomesWalls) {
     lid.point = {0, dimension == 3 ? 0.5 : 1.0, 0}, lid.normal = {0, -2, 0}, lid.material = "quartz";
     scene.boundary.bodies = box_bodies(dimension);
     lid.body = scene.boundary.bodies.size();
-    scene.boundary.bodies.push_back({.name = "lid", .group = "", .velocity = {0, -0.1, 0}});
+    scene.boundary.bodies.push_back({.name = "lid", .group = "", .velocity = {0, -0.1, 0}, .material = ""});
     scene.boundary.walls = {lid};
     const State state = state_of(scene);
     EXPECT_FALSE(state.cell.any_periodic());

@@ -115,20 +115,16 @@ TEST(Preparation, SaysInOneLineWhatCannotBeReached) {
 }
 
 TEST(Preparation, FrictionFallsUntilTheStressIsMetInACellThatStays) {
-  const Scene scene = scene_with("solid_fraction = 0.5\n",
-                                 "[[stage]]\nname = \"compress\"\nfriction = 0.5\nstress = { isotropic = 400e3 }\n"
-                                 "max_strain_rate = 100\nuntil = { stress_error = 0.01, unbalanced_force = 5e-3 }\n"
-                                 "[[stage]]\nname = \"fall\"\nfriction = { start = 0.5, mean_stress = 200e3 }\n"
-                                 "until = { unbalanced_force = 5e-3 }\n");
-  State state = test::state_of(scene);
-  Controller controller(scene);
-  RunObserver observer;
-  double met = 0;  // stress then; as the grains come to rest afterwards it falls by some per cent more
-  observer.step = [&](const State& s, const RunStatus&) { met = met == 0 && s.preparation.met ? mean_stress(s) : met; };
-  run_stages(scene, state, controller, observer);
-  EXPECT_NEAR(met / 200e3, 1, 0.03);
+  Scene scene = scene_with("solid_fraction = 0.5\n",
+                           "[[stage]]\nname = \"compress\"\nfriction = 0.5\nstress = { isotropic = 400e3 }\n"
+                           "max_strain_rate = 100\nuntil = { stress_error = 0.01, unbalanced_force = 5e-3 }\n"
+                           "[[stage]]\nname = \"fall\"\nfriction = { start = 0.5, mean_stress = 200e3 }\n"
+                           "until = { unbalanced_force = 5e-3 }\n");
+  scene.materials[0].shear_modulus =
+      29e7;  // in so small a cell of hard grains any rearrangement releases the whole stress
+  const State state = run(scene);
+  EXPECT_NEAR(mean_stress(state) / 200e3, 1, 0.03);
   EXPECT_TRUE(state.preparation.met);
-  EXPECT_LT(mean_stress(state), 1.001 * met);
 }
 
 const std::string growing =
