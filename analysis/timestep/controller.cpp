@@ -20,7 +20,7 @@ namespace {
 constexpr std::uint64_t nearest = 4, furthest = 512;     // steps from one check to the next
 constexpr std::uint64_t youngest = 1000, oldest = 5000;  // steps that a bound may live
 constexpr double slack = 0.05;                           // of an overlap: 2.5 % of the stiffness of a Hertz contact
-constexpr double least_room = 0.03, most_room = 0.15;
+constexpr double least_room = 0.04, most_room = 0.25;
 constexpr double gain = 1.04;  // of the step, from which on a renewal was worth its cost
 
 /// Steps to the next check.
@@ -93,7 +93,7 @@ void Controller::choose(State& state) {
 void Controller::evaluate(State& state, StepCause cause) {
   auto& plan = state.policy;
   const std::uint64_t age = state.step - plan.made;
-  if (plan.lifetime == 0) plan.lifetime = youngest, plan.room = 3 * least_room;
+  if (plan.lifetime == 0) plan.lifetime = youngest, plan.room = 2 * least_room;
   if (cause == StepCause::growth && age < 2 * youngest) plan.room = std::min(most_room, plan.room * 1.5);
   if (cause == StepCause::renewal && age >= 2 * youngest) plan.room = std::max(least_room, plan.room / 1.25);
 
@@ -103,7 +103,9 @@ void Controller::evaluate(State& state, StepCause cause) {
   const DampingSpec damping = damping_in_force(scene_, state);
   double lower = 0;
   const auto renew = [&](double step) {
-    lower = bounds_.renew(state, {time, slack, plan.room, 4 / (cap * cap), step});
+    // most of the room goes to what all contacts (of Hertz) may grow by together, the rest to single ones
+    const double growth = 1 + 0.4 * plan.room;
+    lower = bounds_.renew(state, {time, growth * growth - 1, 0.6 * plan.room, 4 / (cap * cap), step});
     plan.safe = std::min(cap, proved_damped_step(plan.bound.value, damping, step));
   };
   renew(before > 0 ? before : cap);

@@ -183,7 +183,7 @@ double StandingBounds::renew(State& state, const RenewOptions& options) {
       },
       [&](const ContactPoint& p) {
         const OverlapForecast f = forecast(state, p.i, p.j, p.geometry, options.time);
-        return warm ? with_room(bound, f, p, options.slack, usual, 0.75) : with_slack(f, p, options.slack);
+        return warm ? with_room(bound, f, p, options.slack, usual, 0.7) : with_slack(f, p, options.slack);
       });
   network.springs.insert(network.springs.end(), couples.begin(), couples.end());
   met.insert(met.end(), bent.begin(), bent.end());
