@@ -185,7 +185,8 @@ void add_waves_transmit(CLI::App& waves, Action& action) {
   sub->add_option("--motion", f->motion, "of the source: along the axis a P wave (default), across it an S wave")
       ->check(CLI::IsMember({"x", "y", "z"}));
   sub->add_option("--point", f->point, "source is the grain nearest to x y z [m], not the first layer")->expected(3);
-  sub->add_option("--amplitude", f->amplitude, "of the source over the mean overlap (default: 1e-3)")->check(positive_option);
+  sub->add_option("--amplitude", f->amplitude, "of the source over the mean overlap (default: 1e-3)")
+      ->check(positive_option);
   sub->add_option("--duration", f->duration, "of the test [s] (default: until the waves of both ways meet)")
       ->check(positive_option);
   sub->add_option("--step", f->step, "time step over the proved limit (default: 0.2)")->check(CLI::Range(1e-4, 1.0));

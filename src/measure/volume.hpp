@@ -19,8 +19,8 @@ double cap_volume(int dimension, double radius, double height);
 /// have moved to: the halves of a shear box stay as wide as they were. Infinite where there is none.
 Extent wall_gap(const State&, int k);
 
-/// Section across `axis` (unit) of what hollow cylinders along it leave of the solid ones within them, in the angle that
-/// grains press on [m²]; the widest of each count. 0 without a hollow one.
+/// Section across `axis` (unit) of what hollow cylinders along it leave of the solid ones within them, in the angle
+/// that grains press on [m²]; the widest of each count. 0 without a hollow one.
 double round_section(const State&, const Vec3& axis);
 
 /// Volume of the specimen: of the cell; between parallel walls across x, y or z, the innermost ones count, wherever
