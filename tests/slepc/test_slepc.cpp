@@ -9,21 +9,14 @@
 #include "specimen/make_state.hpp"
 #include "state/damping.hpp"
 #include "support/case_run.hpp"
+#include "support/scene_text.hpp"
 #include "timestep/consistent.hpp"
 #include "timestep/damped_interval.hpp"
 
 namespace eg {
 namespace {
 
-constexpr const char* text = R"(
-title = "shared"
-dimension = 3
-[material.quartz]
-shear_modulus = 29e9
-poisson = 0.12
-density = 2650
-friction = 0.25
-[contact]
+const std::string text = "title = \"shared\"\ndimension = 3\n" + test::quartz + R"([contact]
 law = "hertz-mindlin"
 [specimen]
 source = "lattice"

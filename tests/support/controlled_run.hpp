@@ -11,6 +11,7 @@
 #include "specimen/make_packing.hpp"
 #include "specimen/make_state.hpp"
 #include "state/damping.hpp"
+#include "support/scene_text.hpp"
 #include "timestep/controller.hpp"
 #include "timestep/damped_interval.hpp"
 
@@ -48,16 +49,8 @@ until = { axial_strain = 0.1 }
 
 /// Quartz spheres, radii 1:2, as a cloud that the stages compress; `damping`: the line of [damping].
 inline Scene controlled_scene(std::size_t grains, const char* stages, const std::string& damping = "local = 0.2") {
-  return parse_scene(fmt::format(R"(
-title = "certified step"
-dimension = 3
-seed = 5
-[material.quartz]
-shear_modulus = 29e9
-poisson = 0.12
-density = 2650
-friction = 0.25
-[contact]
+  return parse_scene("title = \"certified step\"\ndimension = 3\nseed = 5\n" + quartz +
+                         fmt::format(R"([contact]
 law = "hertz-mindlin"
 [specimen]
 source = "cloud"
@@ -72,7 +65,7 @@ type = "periodic"
 policy = "certified"
 safety = 0.9
 {})",
-                                 grains, damping, stages),
+                                     grains, damping, stages),
                      "steps.toml");
 }
 

@@ -4,6 +4,15 @@
 
 namespace eg::test {
 
+/// Quartz, the grains of most scenes; sections of the scene are to follow.
+inline const std::string quartz = R"(
+[material.quartz]
+shear_modulus = 29e9
+poisson = 0.12
+density = 2650
+friction = 0.25
+)";
+
 /// `count` soft frictional spheres of .8 to 1.2 mm in a cloud, with the energy ledger; sections of the boundary and the
 /// stages are to follow.
 inline std::string soft_grains(int count) {

@@ -9,20 +9,13 @@
 #include "io/scene_file.hpp"
 #include "io/snapshot_part.hpp"
 #include "scratch.hpp"
+#include "support/scene_text.hpp"
 #include "support/scenes.hpp"
 
 namespace eg {
 namespace {
 
-constexpr const char* text = R"(
-title = "parts"
-dimension = 3
-[material.quartz]
-shear_modulus = 29e9
-poisson = 0.12
-density = 2650
-friction = 0.25
-[contact]
+const std::string text = "title = \"parts\"\ndimension = 3\n" + test::quartz + R"([contact]
 law = "hertz-mindlin"
 [specimen]
 source = "lattice"

@@ -10,6 +10,7 @@
 #include "io/scene_file.hpp"
 #include "measure/stress.hpp"
 #include "measure/volume.hpp"
+#include "support/scene_text.hpp"
 #include "support/scenes.hpp"
 #include "timestep/controller.hpp"
 
@@ -18,15 +19,7 @@ namespace {
 
 /// 300 spheres, compressed to 100 kPa and then put through `stages`.
 std::string sand(const std::string& stages) {
-  return R"(
-dimension = 3
-seed = 2
-[material.quartz]
-shear_modulus = 29e9
-poisson = 0.12
-density = 2650
-friction = 0.25
-[contact]
+  return "dimension = 3\nseed = 2\n" + test::quartz + R"([contact]
 law = "hertz-mindlin"
 [specimen]
 source = "cloud"

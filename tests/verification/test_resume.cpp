@@ -8,6 +8,7 @@
 #include "dynamics/run.hpp"
 #include "io/scene_file.hpp"
 #include "io/snapshot.hpp"
+#include "support/scene_text.hpp"
 #include "support/scenes.hpp"
 #include "timestep/controller.hpp"
 
@@ -15,16 +16,7 @@ using namespace eg;
 
 namespace {
 
-constexpr const char* text = R"(
-title = "resume"
-dimension = 3
-seed = 3
-[material.quartz]
-shear_modulus = 29e9
-poisson = 0.12
-density = 2650
-friction = 0.25
-[contact]
+const std::string text = "title = \"resume\"\ndimension = 3\nseed = 3\n" + test::quartz + R"([contact]
 law = "hertz-mindlin-rescale"
 [specimen]
 source = "cloud"
