@@ -1,13 +1,12 @@
 // eigengrain: discrete elements with a proved time step.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 
 #include "app/commands.hpp"
+#include "base/environment.hpp"
 #include "base/error.hpp"
 #include "base/version.hpp"
 
@@ -25,22 +24,10 @@ void check_subcommand(const CLI::App& app, int argc, char** argv) {
       meant.empty() ? "`eigengrain --help` lists what there is" : fmt::format("did you mean \"{}\"?", meant)));
 }
 
-/// Threads of OpenMP wait in a loop, by default so long that a machine with other work on it slows a run down tenfold;
-/// memory comes in small pages unless glibc is told otherwise, and the search for them takes a twentieth of a step at
-/// 100,000 grains. Both are read from the environment when the program is loaded: set them and start over.
-void fit_environment(char** argv) {
-  if (std::getenv("EIGENGRAIN_STARTED")) return;
-  ::setenv("EIGENGRAIN_STARTED", "1", 1);
-  if (!std::getenv("OMP_WAIT_POLICY"))
-    ::setenv("GOMP_SPINCOUNT", "3000", 0);  // some 100 µs, longer than the gaps between the loops of a step
-  ::setenv("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1", 0);
-  ::execv("/proc/self/exe", argv);  // returns only when it fails; nothing is lost then
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  fit_environment(argv);
+  eg::fit_environment(argv);
   CLI::App app{"eigengrain: discrete elements with a proved time step (SI units everywhere)", "eigengrain"};
   app.require_subcommand(1);
   app.set_version_flag("--version", eg::version());

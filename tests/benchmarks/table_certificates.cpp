@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "base/environment.hpp"
 #include "support/packings.hpp"
 #include "timestep/interval.hpp"
 
@@ -60,6 +61,7 @@ void print_lattice(const char* kind, const char* name, std::size_t grains, doubl
 }  // namespace
 
 int main(int argc, char** argv) {
+  fit_environment(argv);
   std::vector<std::size_t> sizes;
   for (int k = 1; k < argc; ++k) sizes.push_back(static_cast<std::size_t>(std::atof(argv[k])));
   if (sizes.empty()) sizes = {1000, 10000, 100000};

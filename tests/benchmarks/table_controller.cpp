@@ -2,12 +2,14 @@
 // 10 MPa, and triaxial compression to 10 % of strain. Run by: ./dev bench controller [GRAINS [--json]]
 #include <cstring>
 
+#include "base/environment.hpp"
 #include "report/table.hpp"
 #include "support/controlled_run.hpp"
 
 using namespace eg;
 
 int main(int argc, char** argv) {
+  fit_environment(argv);
   const auto grains = static_cast<std::size_t>(argc > 1 ? std::atof(argv[1]) : 10000);
   Table table({{"stage"},
                {"steps"},

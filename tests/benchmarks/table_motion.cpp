@@ -2,6 +2,7 @@
 // rough-bottomed slope against LAMMPS; with the share of list upkeep. Run by: ./dev bench motion
 #include <numbers>
 
+#include "base/environment.hpp"
 #include "rivals.hpp"
 #include "support/packings.hpp"
 
@@ -102,7 +103,8 @@ void slope() {
 
 }  // namespace
 
-int main() {
+int main(int, char** argv) {
+  fit_environment(argv);
   pin(true);
   omp_set_num_threads(1);
   fmt::print("{:<26} {:>7} {:>10} {:>12} {:>10} {:>20} {:>6}\n", "case", "grains", "steps/s", "ns/contact", "lists",

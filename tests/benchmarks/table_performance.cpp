@@ -1,6 +1,7 @@
 // The whole explicit step, list upkeep included, against LAMMPS on the same packings in the same run: a slow isotropic
 // compression of Hertz–Mindlin spheres with shear history, one core each, run in turn.
 // Run by: ./dev bench performance [GRAINS...]; needs Debian's package lammps for the comparison.
+#include "base/environment.hpp"
 #include "rivals.hpp"
 #include "support/packings.hpp"
 
@@ -77,6 +78,7 @@ void print_row(std::size_t grains) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  fit_environment(argv);
   std::vector<std::size_t> sizes;
   for (int k = 1; k < argc; ++k) sizes.push_back(static_cast<std::size_t>(std::atof(argv[k])));
   if (sizes.empty()) sizes = {10000, 100000, 1000000};

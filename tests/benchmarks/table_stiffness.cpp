@@ -9,6 +9,7 @@
 #include <fstream>
 #include <string>
 
+#include "base/environment.hpp"
 #include "report/table.hpp"
 #include "stiffness/backbone.hpp"
 #include "stiffness/relaxation.hpp"
@@ -58,6 +59,7 @@ Sample sample(std::size_t grains) {
 }  // namespace
 
 int main(int count, char** arguments) {
+  fit_environment(arguments);
   const double tolerance = count > 1 ? std::atof(arguments[1]) : 1e-10;
   std::vector<std::size_t> sizes;
   for (int k = 2; k < count; ++k) sizes.push_back(std::strtoul(arguments[k], nullptr, 10));
