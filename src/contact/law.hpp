@@ -146,7 +146,6 @@ template <class S>
 EG_INLINE Vec<S> coulomb(const Vec<S>& trial, const S& limit) {
   const S t2 = dot(trial, trial);
   const auto slides = t2 > limit * limit;
-  if (!any(slides)) return trial;
   return trial * select(slides, limit * rsqrt(max(t2, S(1e-300))), S(1.0));
 }
 

@@ -170,8 +170,9 @@ void Engine::drift() {
   if (scene_.energy) state_.ledger.boundary += 0.5 * applied_work(state_, dt);  // the other half: forces()
   for (const auto& g : state_.glued) state_.grains.velocity[g.grain].set(state_.bodies[g.body].velocity);
   eg::drift(state_, dt, blocks_);
-  const Travel bound = blocks_.travel();
-  if (outdated(state_, {1.001 * bound.most, 1.001 * bound.approach})) {  // rounding aside, the bound tells
+  // Bounds, the cheapest first; rounding aside, they tell.
+  const auto told = [&](const Travel& t) { return !outdated(state_, {1.001 * t.most, 1.001 * t.approach}); };
+  if (!told(blocks_.coarse()) && !told(blocks_.travel())) {
     const double begin = omp_get_wtime();
     blocks_.measure(state_);
     if (update_lists(state_, blocks_.travel(), list_scratch_)) {

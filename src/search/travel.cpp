@@ -89,6 +89,12 @@ double Blocks::most() const {
   return std::sqrt(most);
 }
 
+Travel Blocks::coarse() const {
+  Double4 low{}, high{};
+  for (std::size_t b = 0; b < count(); ++b) low = lower(low, low_[b]), high = upper(high, high_[b]);
+  return {std::sqrt(square(upper(-low, high))) + slack_, std::sqrt(square(high - low)) + 2 * slack_};
+}
+
 Travel Blocks::travel() const {
   double most = 0;
   for (std::size_t a = 0; a < count(); ++a)

@@ -33,7 +33,8 @@ class Blocks {
   /// The cell's rate of deformation [1/s] has turned displacements for dt [s]: to be told after the moves of a step.
   void deform(const Mat3& rate, double dt) { slack_ += (most() + slack_) * norm(rate) * dt; }
 
-  Travel travel() const;
+  Travel travel() const;  ///< from every two blocks that are near each other
+  Travel coarse() const;  ///< from one box around all: no less, and cheap
 
  private:
   double most() const;

@@ -4,11 +4,20 @@
 
 namespace eg {
 
+std::size_t Schedule::first_chunk(std::size_t thread, std::size_t threads) const {
+  if (thread == threads) return chunks();
+  const std::uint64_t wanted = pair_begin.back() * thread / threads;
+  const auto at = std::ranges::lower_bound(pair_begin, wanted) - pair_begin.begin();
+  const bool back = at > 0 && wanted - pair_begin[at - 1] < pair_begin[at] - wanted;
+  return static_cast<std::size_t>(at - back);
+}
+
 void make_schedule(Schedule& out, std::size_t grains, std::size_t chunk, std::span<const Index> j,
                    std::span<const std::uint64_t> chunk_begin) {
   const std::size_t chunks = chunk_begin.size() - 1;
   out.first_source.resize(chunks);
   for (std::size_t k = 0; k < chunks; ++k) out.first_source[k] = static_cast<Index>(k);
+  out.pair_begin.assign(chunk_begin.begin(), chunk_begin.end());
   out.grains = grains;
   out.target.assign(j.begin(), j.end());
   out.halo_begin.assign(1, static_cast<Index>(grains));

@@ -18,11 +18,15 @@ struct Schedule {
   std::vector<Index> gather_begin;  ///< entries of chunk k: [gather_begin[k], gather_begin[k+1]), sorted by grain
   std::vector<Index> gather_grain;  ///< grain of an entry, and the halo row to add to it
   std::vector<Index> gather_row;
-  std::vector<Index> first_source;  ///< first chunk with a pair whose j lies in chunk k (k itself if none)
+  std::vector<Index> first_source;        ///< first chunk with a pair whose j lies in chunk k (k itself if none)
+  std::vector<std::uint64_t> pair_begin;  ///< pairs of chunk k: [pair_begin[k], pair_begin[k+1])
   std::size_t grains = 0;
 
   std::size_t rows() const { return grains + gather_row.size(); }
   std::size_t chunks() const { return halo_begin.empty() ? 0 : halo_begin.size() - 1; }
+  /// Thread t of so many has the chunks [first_chunk(t, threads), first_chunk(t + 1, threads)): about as many pairs as
+  /// the others. Chunks with the same number of grains have the fewer pairs the later they come.
+  std::size_t first_chunk(std::size_t thread, std::size_t threads) const;
 };
 
 /// Within a parallel region: `work(chunk)` for every chunk, and `after(chunk)` as soon as all pairs of its grains are
@@ -30,17 +34,21 @@ struct Schedule {
 /// is done, unless another thread's chunk adds to them.
 template <class Work, class After>
 void run_chunks(const Schedule& schedule, Work&& work, After&& after) {
-  const std::size_t chunks = schedule.chunks();
   const auto thread = static_cast<std::size_t>(omp_get_thread_num());
   const auto threads = static_cast<std::size_t>(omp_get_num_threads());
-  const std::size_t first = chunks * thread / threads, end = chunks * (thread + 1) / threads;
+  const std::size_t first = schedule.first_chunk(thread, threads), end = schedule.first_chunk(thread + 1, threads);
   for (std::size_t k = first; k < end; ++k) {
     work(k);
     if (schedule.first_source[k] >= first) after(k);
   }
 #pragma omp barrier
-  for (std::size_t k = first; k < end; ++k)
-    if (schedule.first_source[k] < first) after(k);
+  // What waited is shared out anew: it is most chunks of the last thread and none of the first.
+  std::size_t turn = 0;
+  for (std::size_t t = 1; t < threads; ++t) {
+    const std::size_t low = schedule.first_chunk(t, threads), high = schedule.first_chunk(t + 1, threads);
+    for (std::size_t k = low; k < high; ++k)
+      if (schedule.first_source[k] < low && turn++ % threads == thread) after(k);
+  }
 }
 
 /// Pairs sorted by i, in chunks of `chunk` grains; `chunk_begin` as in Contacts. O(pairs).

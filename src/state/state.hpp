@@ -32,8 +32,8 @@ struct Grains {
 /// itself. Grains are taken in chunks of `chunk`; the contacts of a chunk (those whose i lies in it) are padded to
 /// whole blocks of `lanes` by entries with i == j in the home image. Loop over contacts with is_padding() in mind.
 struct Contacts {
-  static constexpr std::size_t lanes = 8, chunk = 1024;
-  static constexpr std::size_t worth_threads = 4;  ///< chunks from which starting threads pays
+  static constexpr std::size_t lanes = 8, chunk = 512;
+  static constexpr std::size_t worth_threads = 8;  ///< chunks from which starting threads pays
   std::vector<Index> i, j;
   std::vector<std::uint8_t> image;  ///< code of Cell::shift; empty when no direction is periodic
   std::vector<double> history;      ///< blocks [value][lane] of eight contacts; vectors first (shear force on i [N])
