@@ -33,7 +33,8 @@ std::vector<MeasureSphere> spheres_of(const MeasureFlags& flags, int dimension) 
   for (const auto& s : flags.spheres) {
     const auto size = static_cast<std::size_t>(dimension) + 1;
     if (s.size() != size || !(s.back() > 0))
-      throw input_error(flags.packing.input, 0, "--sphere", fmt::format("takes {} numbers in {}D", size, dimension),
+      throw input_error(flags.packing.input, 0, "--sphere",
+                        fmt::format("takes {} numbers in {}D, the radius > 0", size, dimension),
                         dimension == 3 ? "give X,Y,Z,RADIUS in m" : "give X,Y,RADIUS in m");
     spheres.push_back({{s[0], s[1], dimension == 3 ? s[2] : 0.0}, s.back()});
   }

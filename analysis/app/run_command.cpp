@@ -33,23 +33,45 @@ struct RunFlags {
   int threads = 0;
 };
 
-/// Where results go; refuses to bury those of an earlier run.
-fs::path result_folder(const RunFlags& flags, bool resumed) {
-  const fs::path input(flags.input);
-  if (!flags.out.empty() || !resumed) {
-    const fs::path folder = flags.out.empty() ? fs::path("out") / input.stem() : fs::path(flags.out);
-    if (fs::exists(folder / "history.csv") && !flags.overwrite && !resumed)
-      throw InputError(
-          fmt::format("{}: holds the results of an earlier run; name another folder with --out, or say --overwrite",
-                      folder.string()));
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error)
-      throw InputError(
-          fmt::format("{}: cannot be made a folder ({}); name another with --out", folder.string(), error.message()));
-    return folder;
+/// Takes away what an earlier run has written, so that nothing of it stays beside the new results.
+void clear_results(const fs::path& folder) {
+  for (const char* name :
+       {"history.csv", "timestep.csv", "final.h5", "final.vtp", "result.json", "resume.h5", "failed.h5"})
+    fs::remove(folder / name);
+  std::vector<fs::path> snapshots;
+  for (const auto& file : fs::directory_iterator(folder)) {
+    const std::string name = file.path().filename().string();
+    if (file.path().extension() == ".h5" && (name.starts_with("step_") || name.starts_with("stage_")))
+      snapshots.push_back(file.path());
   }
-  return input.has_parent_path() ? input.parent_path() : fs::path(".");
+  for (const auto& file : snapshots) fs::remove(file);
+}
+
+/// The histories of a run that goes on in another folder.
+void bring_histories(const fs::path& from, const fs::path& to) {
+  for (const char* name : {"history.csv", "timestep.csv"})
+    if (fs::exists(from / name)) fs::copy_file(from / name, to / name);
+}
+
+/// Where results go; refuses to bury those of another run.
+fs::path result_folder(const RunFlags& flags, bool resumed) {
+  const fs::path input(flags.input), home = input.has_parent_path() ? input.parent_path() : fs::path(".");
+  if (resumed && flags.out.empty()) return home;
+  const fs::path folder = flags.out.empty() ? fs::path("out") / input.stem() : fs::path(flags.out);
+  std::error_code error;
+  if (resumed && fs::equivalent(folder, home, error)) return folder;
+  const bool used = fs::exists(folder / "history.csv");
+  if (used && !flags.overwrite)
+    throw InputError(
+        fmt::format("{}: holds the results of an earlier run; name another folder with --out, or say --overwrite",
+                    folder.string()));
+  fs::create_directories(folder, error);
+  if (error)
+    throw InputError(
+        fmt::format("{}: cannot be made a folder ({}); name another with --out", folder.string(), error.message()));
+  if (used) clear_results(folder);
+  if (resumed) bring_histories(home, folder);
+  return folder;
 }
 
 /// Everything that is written while a run goes on.
@@ -201,7 +223,11 @@ int run_command(const RunFlags& flags) {
   if (resumed && state.stage >= scene.stages.size())
     throw InputError(fmt::format("{}: this run is complete, there is nothing to go on with", flags.input));
 
-  Recorder recorder(scene, state, result_folder(flags, resumed), resumed);
+  const fs::path folder = result_folder(flags, resumed);
+  if (resumed && state.step > 0 && !fs::exists(folder / "history.csv"))
+    fmt::print(stderr, "warning: {} holds no history.csv; the history begins at step {}\n", folder.string(),
+               state.step);
+  Recorder recorder(scene, state, folder, resumed);
   Controller controller(scene);
   const auto begin = std::chrono::steady_clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };

@@ -39,12 +39,21 @@ ConjugateGradientResult conjugate_gradient(const A& a, const P& precondition, st
   std::vector<double> drops;  // δ
   precondition.apply(r, z);
   double rho = dot(r, z), before = rho;
+  double stiffest = 0;  // largest pᵀAp/pᵀp so far
+  const auto allowed = [&] {
+    const double left = options.reference > 0 ? options.reference - result.energy : result.energy;
+    return options.tolerance * std::max(left, 1e-6 * options.reference);
+  };
   const double first = rho, nothing = 1e-28 * std::max(options.reference, first);
   while (rho > nothing && result.iterations < options.max_iterations) {
     scale_and_add(p, result.iterations == 0 ? 0.0 : rho / before, z);
     a.apply(p, q);
-    const double curvature = dot(p, q);
-    if (!(curvature > 0)) break;
+    const double curvature = dot(p, q), square = dot(p, p);
+    stiffest = std::max(stiffest, curvature / square);
+    if (!(curvature > 1e-15 * stiffest * square)) {  // round-off along what A does not resist: nothing else is left
+      result.error = rho, result.converged = rho <= allowed();
+      break;
+    }
     const double alpha = rho / curvature;
     add_scaled(x, alpha, p);
     add_scaled(r, -alpha, q);
@@ -58,8 +67,7 @@ ConjugateGradientResult conjugate_gradient(const A& a, const P& precondition, st
     if (drops.size() < delay) continue;
     result.error = 0;
     for (std::size_t k = drops.size() - delay; k < drops.size(); ++k) result.error += drops[k];
-    const double left = options.reference > 0 ? options.reference - result.energy : result.energy;
-    result.converged = result.error <= options.tolerance * std::max(left, 1e-6 * options.reference);
+    result.converged = result.error <= allowed();
     if (result.converged) break;
   }
   if (!(rho > nothing)) result.converged = true, result.error = std::max(rho, 0.0);

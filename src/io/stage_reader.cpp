@@ -312,7 +312,10 @@ StageSpec read_stage(const TomlReader& t, const Scene& scene) {
   if (hold) read_hold(*hold, drivers);
   if (const auto cycle = t.table("cycle")) stage.cycle = read_cycle(*cycle, drivers);
   read_bodies(t, scene, stage);
-  read_until(*t.table("until", Need::required), stage);
+  const auto until = *t.table("until", Need::required);
+  read_until(until, stage);
+  if (stage.until_displacement > 0 && scene.boundary.bodies.empty())
+    throw until.error("displacement", "needs a body that moves", "use time, steps or a strain, or add walls");
   if (const auto record = t.table("record")) read_record(*record, stage);
   t.finish();
   check_preparation(t, scene, stage);

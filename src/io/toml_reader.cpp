@@ -109,8 +109,12 @@ void TomlReader::finish() const {
 }
 
 double TomlReader::checked_number(const toml::node& node, const std::string& subject, const Range& range) const {
-  if (node.is_string())
-    throw error_at(node, subject, "must be a number", "write it in SI units, without quotes and without a unit");
+  if (node.is_string()) {
+    const std::string text = node.as_string()->get();
+    throw error_at(
+        node, subject, "must be a number",
+        text.starts_with('.') ? "write 0" + text : "write it in SI units, without quotes and without a unit");
+  }
   if (!node.is_number()) throw error_at(node, subject, "must be a number");
   const double x = node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
   if (!range.holds(x)) throw error_at(node, subject, range.rule());

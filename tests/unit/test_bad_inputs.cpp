@@ -271,6 +271,10 @@ const std::vector<SceneCase> scene_cases{
      "s.toml:9: specimen has expand_to, but no stage lets grains grow; add radius_growth to a stage"},
     {20, "until = { cycles = 3 }",
      "s.toml:20: stage[1].until.cycles = 3 needs a cycle to count; add cycle = { … } to the stage"},
+    {20, "until = { displacement = 1e-3 }",
+     "s.toml:20: stage[1].until.displacement = 0.001 needs a body that moves; use time, steps or a strain, or add "
+     "walls"},
+    {6, "friction = \".25\"", "s.toml:6: material.quartz.friction = \".25\" must be a number; write 0.25"},
     {20, "until = {}",
      "s.toml:20: stage[1].until names no condition; give at least one of stress_error, unbalanced_force, time, steps, "
      "axial_strain, shear_strain, displacement, cycles"},
