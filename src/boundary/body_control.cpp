@@ -57,23 +57,30 @@ double round_area(const Scene& scene, const State& state, std::size_t body) {
   return spec.angle * wall_of(state, body, Wall::cylinder)->radius * height;
 }
 
-/// Across `along`: of a ring between a hollow cylinder with that axis and a solid one, else the mean section inside a
-/// membrane, else of the box between planes.
-double flat_area(const State& state, const Vec3& along) {
-  if (const double round = round_section(state, along); round > 0) return round;
+/// Sets the area across `along`: of a ring between a hollow cylinder with that axis and a solid one, else the mean
+/// section inside a membrane, else of the box between planes.
+void set_flat_area(const State& state, const Vec3& along, BodyLoad& load) {
+  load.area = round_section(state, along);
+  if (load.area > 0) return;
+  load.area = not_given;
   const int axis = main_axis(along);
-  if (axis < 0) return not_given;
-  if (state.membrane.volume > 0) return state.membrane.volume / span(state, axis);
-  double area = 1;
+  if (axis < 0) return;
+  const Membrane& membrane = state.membrane;
+  if (membrane.volume > 0) {
+    load.area = membrane.volume / span(state, axis);
+    load.bias = membrane.stress * ((along[axis] < 0 ? membrane.low_ends : membrane.high_ends)[axis] - load.area);
+    return;
+  }
+  load.area = 1;
   for (int k = 0; k < state.dimension; ++k)
-    if (k != axis) area *= span(state, k);
-  return area;
+    if (k != axis) load.area *= span(state, k);
 }
 
 /// On the boundary.
 double target_force(const Scene& scene, const State& state, const BodyDrive& drive) {
   if (drive.servo == Servo::force) return drive.target;
-  return (drive.target + state.bodies[drive.body].correction) * body_load(scene, state, drive).area;
+  const BodyLoad load = body_load(scene, state, drive);
+  return (drive.target + state.bodies[drive.body].correction) * load.area + load.bias;
 }
 
 /// Mean normal stress along `along` in a sphere [Pa]: the windows of measure/measure_sphere.hpp.
@@ -131,10 +138,26 @@ BodyLoad body_load(const Scene& scene, const State& state, const BodyDrive& driv
   } else if (drive.servo != Servo::none || plane) {
     const Vec3 along = drive.servo != Servo::none ? drive.along : -plane->normal;
     load.force = dot(body.force, along);
-    load.area = flat_area(state, along);
+    set_flat_area(state, along, load);
   }
-  if (const double given = scene.boundary.bodies[drive.body].area; !std::isnan(given)) load.area = given;
+  if (const double given = scene.boundary.bodies[drive.body].area; !std::isnan(given)) load.area = given, load.bias = 0;
   return load;
+}
+
+double outer_stress(const Scene& scene, const State& state, std::size_t body) {
+  const Wall* plane = wall_of(state, body, Wall::plane);
+  const int axis = plane ? main_axis(plane->normal) : -1;
+  if (axis < 0 || !(state.membrane.volume > 0)) return not_given;
+  double section = 1;
+  for (int k = 0; k < state.dimension; ++k) {
+    if (k == axis) continue;
+    Extent width{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    for (const Quad& p : state.grains.position)
+      width = {std::min(width.low, p.vec()[k] - p.w), std::max(width.high, p.vec()[k] + p.w)};
+    section *= width.length();
+  }
+  const BodyLoad load = body_load(scene, state, drive_of(scene, state, body));
+  return state.membrane.stress + (load.stress() - state.membrane.stress) * load.area / section;
 }
 
 BodyControl::BodyControl(const Scene& scene, const State& state) : scene_(scene) {

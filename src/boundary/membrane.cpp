@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.hpp"
 #include "boundary/outer_surface.hpp"
@@ -61,12 +62,16 @@ void lay_membrane(const Scene& scene, State& state) {
   if (!scene.boundary.membrane || stress == 0) return;
   const OuterSurface surface = outer_surface(state, probe_of(scene, state));
   if (!surface.lost.empty()) report_lost(state, surface.lost);
-  state.membrane = {.stress = stress, .area = 0, .volume = surface.volume, .solid = surface.solid};
+  state.membrane.stress = stress, state.membrane.volume = surface.volume, state.membrane.solid = surface.solid;
   std::vector<Vec3> force(state.grains.size());
   const auto corners = static_cast<std::size_t>(state.dimension);
   for (const auto& facet : surface.facets) {
-    if (facet.planes != 0) continue;
     const Vec3 outward = facet.outward(state.dimension);
+    if (facet.planes != 0) {
+      for (int k = 0; k < 3; ++k)
+        (outward[k] < 0 ? state.membrane.low_ends : state.membrane.high_ends)[k] += std::abs(outward[k]);
+      continue;
+    }
     state.membrane.area += norm(outward);
     const auto share = corners == 3 ? shares_of(facet.corner) : std::array<double, 3>{0.5, 0.5, 0};
     for (std::size_t k = 0; k < corners; ++k) force[facet.grain[k]] -= outward * (stress * share[k]);
