@@ -21,6 +21,7 @@ constexpr double slow_enough = 2.5e-3;  // inertial number below which straining
 
 constexpr std::uint64_t region_steps = 100;  // between looks into a servo's region
 constexpr double region_gain = 0.1;          // share of what it lacks that the boundary's target moves by
+constexpr double runaway = 2;                // edges of the specimen's box that a servo may move its body by
 constexpr double most_correction = 0.8;      // of the target: an empty region does not run away with the wall
 
 using Servo = BodyDrive::Servo;
@@ -68,7 +69,9 @@ void set_flat_area(const State& state, const Vec3& along, BodyLoad& load) {
   const Membrane& membrane = state.membrane;
   if (membrane.volume > 0) {
     load.area = membrane.volume / span(state, axis);
-    load.bias = membrane.stress * ((along[axis] < 0 ? membrane.low_ends : membrane.high_ends)[axis] - load.area);
+    const Extent gap = wall_gap(state, axis);
+    const double across = along[axis] < 0 ? gap.high : gap.low;  // the other end, about which the loads are balanced
+    load.bias = (membrane.moment[axis] - membrane.net[axis] * across) / gap.length();
     return;
   }
   load.area = 1;
@@ -104,10 +107,26 @@ void correct_target(const Scene& scene, State& state, const BodyDrive& drive, do
                                -most_correction * drive.target, most_correction * drive.target);
 }
 
-/// Speed at which the specimen strains with the inertial number of slow tests.
-double default_speed(const Scene& scene, const State& state, const BodyDrive& drive) {
+double longest_edge(const State& state) {
   double length = 0;
   for (int k = 0; k < state.dimension; ++k) length = std::max(length, state.cell.h(k, k));
+  return length;
+}
+
+/// A servo that nothing holds against would go on for ever.
+void check_way(const Scene& scene, const State& state, const BodyDrive& drive) {
+  const Body& body = state.bodies[drive.body];
+  const double way = drive.radial ? body.opened : dot(body.moved, drive.along), most = runaway * longest_edge(state);
+  if (std::abs(way) > most)
+    throw RunError(
+        fmt::format("step {}: the servo of {} runs away: moved by {:.4g} m, more than {:g} times the specimen's "
+                    "longest edge; see that walls hold the specimen on all other sides and that the target can be met",
+                    state.step, scene.boundary.bodies[drive.body].name, std::abs(way), runaway));
+}
+
+/// Speed at which the specimen strains with the inertial number of slow tests.
+double default_speed(const Scene& scene, const State& state, const BodyDrive& drive) {
+  const double length = longest_edge(state);
   const double area = body_load(scene, state, drive).area;
   const double target = drive.servo == Servo::stress || std::isnan(area) ? drive.target : drive.target / area;
   return slow_enough * length / size_statistics(state).d50 *
@@ -179,6 +198,7 @@ void BodyControl::drive(State& state, double dt) const {
       if (!d.free[static_cast<std::size_t>(k)]) body.velocity[k] = d.velocity[k];
     body.opening = d.opening;
     if (d.servo == Servo::none) continue;
+    check_way(scene_, state, d);
     const double target = target_force(scene_, state, d), excess = body_load(scene_, state, d).force - target;
     if (d.region && state.stage_step % region_steps == 0) correct_target(scene_, state, d, excess, target);
     const bool touched = body.stiffness > 0;

@@ -34,8 +34,8 @@ double body_step_limit(const State& state);
 
 /// What grains press on a body with, out of the specimen [N] (along its servo's direction; without servo that of its
 /// first plane or cylinder), and on which area [m²] (2D: N/m and m); NaN where walls do not tell. An end of a specimen
-/// in a membrane of pressure σ3 is seldom as wide as its mean section: of the force, bias = σ3 (end − area) does no
-/// more than balance the membrane, and what is left is the mean stress of the grains, exactly where ends are smooth.
+/// in a membrane is seldom as wide as its mean section: a part of the force, bias, does no more than balance the
+/// membrane's loads along the axis, and what is left over the mean section is the mean stress of the grains.
 struct BodyLoad {
   double force = not_given, area = not_given, bias = 0;
   double stress() const { return (force - bias) / area; }

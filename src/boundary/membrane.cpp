@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/error.hpp"
 #include "boundary/outer_surface.hpp"
@@ -66,18 +65,18 @@ void lay_membrane(const Scene& scene, State& state) {
   std::vector<Vec3> force(state.grains.size());
   const auto corners = static_cast<std::size_t>(state.dimension);
   for (const auto& facet : surface.facets) {
+    if (facet.planes != 0) continue;
     const Vec3 outward = facet.outward(state.dimension);
-    if (facet.planes != 0) {
-      for (int k = 0; k < 3; ++k)
-        (outward[k] < 0 ? state.membrane.low_ends : state.membrane.high_ends)[k] += std::abs(outward[k]);
-      continue;
-    }
     state.membrane.area += norm(outward);
     const auto share = corners == 3 ? shares_of(facet.corner) : std::array<double, 3>{0.5, 0.5, 0};
     for (std::size_t k = 0; k < corners; ++k) force[facet.grain[k]] -= outward * (stress * share[k]);
   }
-  for (Index g = 0; g < force.size(); ++g)
-    if (dot(force[g], force[g]) > 0) state.applied.push_back({g, force[g]});
+  for (Index g = 0; g < force.size(); ++g) {
+    if (!(dot(force[g], force[g]) > 0)) continue;
+    state.applied.push_back({g, force[g]});
+    state.membrane.net += force[g];
+    for (int k = 0; k < 3; ++k) state.membrane.moment[k] += force[g][k] * state.grains.position[g].vec()[k];
+  }
 }
 
 double applied_work(const State& state, double dt) {

@@ -99,7 +99,7 @@ void add_balls(std::vector<Row>& rows, const std::string& test, double theory,
     SceneSettings settings{fmt::format("specimen.radius_scatter={}", s / 100)};
     if (s > 0) {
       settings.push_back("stage[2].body.z_high.velocity=[0,0,-4.8e-3]");
-      settings.push_back("stage[2].until.displacement=30");
+      settings.push_back("stage[2].until.displacement=24");
       settings.push_back("specimen.cells=" + cells);
       settings.push_back("stage[2].record.every_displacement=0.1");
     }
@@ -112,9 +112,9 @@ void add_balls(std::vector<Row>& rows, const std::string& test, double theory,
 std::vector<Row> all_rows() {
   std::vector<Row> rows;
   add_rods(rows);
-  add_balls(rows, "fcc_triaxial", 24.60, {{0, 24.4}}, "[6,6,10]");
-  add_balls(rows, "rhombic_triaxial", 41.58, {{0, 41.6}}, "[6,3,7]");
-  add_balls(rows, "rhombic_plane_strain", none, {{0, 40.0}, {0.7, 37.5}, {1.2, 36.0}, {1.9, 32.6}}, "[7,4,8]");
+  add_balls(rows, "fcc_triaxial", 24.60, {{0, 24.4}}, "[5,5,8]");
+  add_balls(rows, "rhombic_triaxial", 41.58, {{0, 41.6}}, "[5,3,6]");
+  add_balls(rows, "rhombic_plane_strain", none, {{0, 40.0}, {0.7, 37.5}, {1.2, 36.0}, {1.9, 32.6}}, "[5,3,6]");
   return rows;
 }
 
