@@ -75,7 +75,8 @@ Packing bare_grains(const State& state) {
 State make_specimen(const Scene& scene) {
   if (scene.specimen.source != SpecimenSpec::Source::file) return make_state(scene, make_packing(scene));
   const std::string path = resolve_path(scene, scene.specimen.path);
-  if (!looks_like_snapshot(path)) return make_state(scene, read_packing(path));
+  const bool periodic = scene.boundary.kind == BoundarySpec::Kind::periodic;
+  if (!looks_like_snapshot(path)) return make_state(scene, read_packing(path, periodic));
   State state = read_snapshot(path).state;  // grains, contacts and cell; the new scene's stages begin
   if (state.dimension != scene.dimension)
     throw input_error(scene.file, 0, "specimen.path",

@@ -149,6 +149,9 @@ void add_body_columns(Columns& c, const Scene& scene) {
     c.push_back({{bodies[b].name + "_stress", pressure}, [b](const RowSource& r) {
                    return body_load(r.scene, r.state, drive_of(r.scene, r.state, b)).stress();
                  }});
+    if (scene.boundary.membrane)
+      c.push_back({{bodies[b].name + "_outer_stress", pressure},
+                   [b](const RowSource& r) { return outer_stress(r.scene, r.state, b); }});
     const bool looks_inside = std::ranges::any_of(scene.stages, [b](const StageSpec& s) {
       return std::ranges::any_of(s.bodies, [b](const BodyDrive& d) { return d.body == b && d.region; });
     });

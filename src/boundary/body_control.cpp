@@ -21,6 +21,7 @@ constexpr double slow_enough = 2.5e-3;  // inertial number below which straining
 
 constexpr std::uint64_t region_steps = 100;  // between looks into a servo's region
 constexpr double region_gain = 0.1;          // share of what it lacks that the boundary's target moves by
+constexpr double runaway = 2;                // edges of the specimen's box that a servo may move its body by
 constexpr double most_correction = 0.8;      // of the target: an empty region does not run away with the wall
 
 using Servo = BodyDrive::Servo;
@@ -57,23 +58,32 @@ double round_area(const Scene& scene, const State& state, std::size_t body) {
   return spec.angle * wall_of(state, body, Wall::cylinder)->radius * height;
 }
 
-/// Across `along`: of a ring between a hollow cylinder with that axis and a solid one, else the mean section inside a
-/// membrane, else of the box between planes.
-double flat_area(const State& state, const Vec3& along) {
-  if (const double round = round_section(state, along); round > 0) return round;
+/// Sets the area across `along`: of a ring between a hollow cylinder with that axis and a solid one, else the mean
+/// section inside a membrane, else of the box between planes.
+void set_flat_area(const State& state, const Vec3& along, BodyLoad& load) {
+  load.area = round_section(state, along);
+  if (load.area > 0) return;
+  load.area = not_given;
   const int axis = main_axis(along);
-  if (axis < 0) return not_given;
-  if (state.membrane.volume > 0) return state.membrane.volume / span(state, axis);
-  double area = 1;
+  if (axis < 0) return;
+  const Membrane& membrane = state.membrane;
+  if (membrane.volume > 0) {
+    load.area = membrane.volume / span(state, axis);
+    const Extent gap = wall_gap(state, axis);
+    const double across = along[axis] < 0 ? gap.high : gap.low;  // the other end, about which the loads are balanced
+    load.bias = (membrane.moment[axis] - membrane.net[axis] * across) / gap.length();
+    return;
+  }
+  load.area = 1;
   for (int k = 0; k < state.dimension; ++k)
-    if (k != axis) area *= span(state, k);
-  return area;
+    if (k != axis) load.area *= span(state, k);
 }
 
 /// On the boundary.
 double target_force(const Scene& scene, const State& state, const BodyDrive& drive) {
   if (drive.servo == Servo::force) return drive.target;
-  return (drive.target + state.bodies[drive.body].correction) * body_load(scene, state, drive).area;
+  const BodyLoad load = body_load(scene, state, drive);
+  return (drive.target + state.bodies[drive.body].correction) * load.area + load.bias;
 }
 
 /// Mean normal stress along `along` in a sphere [Pa]: the windows of measure/measure_sphere.hpp.
@@ -97,10 +107,26 @@ void correct_target(const Scene& scene, State& state, const BodyDrive& drive, do
                                -most_correction * drive.target, most_correction * drive.target);
 }
 
-/// Speed at which the specimen strains with the inertial number of slow tests.
-double default_speed(const Scene& scene, const State& state, const BodyDrive& drive) {
+double longest_edge(const State& state) {
   double length = 0;
   for (int k = 0; k < state.dimension; ++k) length = std::max(length, state.cell.h(k, k));
+  return length;
+}
+
+/// A servo that nothing holds against would go on for ever.
+void check_way(const Scene& scene, const State& state, const BodyDrive& drive) {
+  const Body& body = state.bodies[drive.body];
+  const double way = drive.radial ? body.opened : dot(body.moved, drive.along), most = runaway * longest_edge(state);
+  if (std::abs(way) > most)
+    throw RunError(
+        fmt::format("step {}: the servo of {} runs away: moved by {:.4g} m, more than {:g} times the specimen's "
+                    "longest edge; see that walls hold the specimen on all other sides and that the target can be met",
+                    state.step, scene.boundary.bodies[drive.body].name, std::abs(way), runaway));
+}
+
+/// Speed at which the specimen strains with the inertial number of slow tests.
+double default_speed(const Scene& scene, const State& state, const BodyDrive& drive) {
+  const double length = longest_edge(state);
   const double area = body_load(scene, state, drive).area;
   const double target = drive.servo == Servo::stress || std::isnan(area) ? drive.target : drive.target / area;
   return slow_enough * length / size_statistics(state).d50 *
@@ -131,10 +157,26 @@ BodyLoad body_load(const Scene& scene, const State& state, const BodyDrive& driv
   } else if (drive.servo != Servo::none || plane) {
     const Vec3 along = drive.servo != Servo::none ? drive.along : -plane->normal;
     load.force = dot(body.force, along);
-    load.area = flat_area(state, along);
+    set_flat_area(state, along, load);
   }
-  if (const double given = scene.boundary.bodies[drive.body].area; !std::isnan(given)) load.area = given;
+  if (const double given = scene.boundary.bodies[drive.body].area; !std::isnan(given)) load.area = given, load.bias = 0;
   return load;
+}
+
+double outer_stress(const Scene& scene, const State& state, std::size_t body) {
+  const Wall* plane = wall_of(state, body, Wall::plane);
+  const int axis = plane ? main_axis(plane->normal) : -1;
+  if (axis < 0 || !(state.membrane.volume > 0)) return not_given;
+  double section = 1;
+  for (int k = 0; k < state.dimension; ++k) {
+    if (k == axis) continue;
+    Extent width{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    for (const Quad& p : state.grains.position)
+      width = {std::min(width.low, p.vec()[k] - p.w), std::max(width.high, p.vec()[k] + p.w)};
+    section *= width.length();
+  }
+  const BodyLoad load = body_load(scene, state, drive_of(scene, state, body));
+  return state.membrane.stress + (load.stress() - state.membrane.stress) * load.area / section;
 }
 
 BodyControl::BodyControl(const Scene& scene, const State& state) : scene_(scene) {
@@ -156,6 +198,7 @@ void BodyControl::drive(State& state, double dt) const {
       if (!d.free[static_cast<std::size_t>(k)]) body.velocity[k] = d.velocity[k];
     body.opening = d.opening;
     if (d.servo == Servo::none) continue;
+    check_way(scene_, state, d);
     const double target = target_force(scene_, state, d), excess = body_load(scene_, state, d).force - target;
     if (d.region && state.stage_step % region_steps == 0) correct_target(scene_, state, d, excess, target);
     const bool touched = body.stiffness > 0;

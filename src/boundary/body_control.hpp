@@ -33,12 +33,17 @@ void glue_grains(State& state, const std::vector<std::size_t>& glue);
 double body_step_limit(const State& state);
 
 /// What grains press on a body with, out of the specimen [N] (along its servo's direction; without servo that of its
-/// first plane or cylinder), and on which area [m²] (2D: N/m and m); NaN where walls do not tell.
+/// first plane or cylinder), and on which area [m²] (2D: N/m and m); NaN where walls do not tell. An end of a specimen
+/// in a membrane is seldom as wide as its mean section: a part of the force, bias, does no more than balance the
+/// membrane's loads along the axis, and what is left over the mean section is the mean stress of the grains.
 struct BodyLoad {
-  double force = not_given, area = not_given;
-  double stress() const { return force / area; }
+  double force = not_given, area = not_given, bias = 0;
+  double stress() const { return (force - bias) / area; }
 };
 BodyLoad body_load(const Scene& scene, const State& state, const BodyDrive& drive);
+/// σ3 + (load beyond it)/(section that the outermost grains span) [Pa] (2D: N/m), as a laboratory has it that measures
+/// the specimen from outside. NaN without a membrane and for bodies without a plane across x, y or z.
+double outer_stress(const Scene& scene, const State& state, std::size_t body);
 /// The drive of a body in the stage under way.
 BodyDrive drive_of(const Scene& scene, const State& state, std::size_t body);
 

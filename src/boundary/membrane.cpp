@@ -61,7 +61,7 @@ void lay_membrane(const Scene& scene, State& state) {
   if (!scene.boundary.membrane || stress == 0) return;
   const OuterSurface surface = outer_surface(state, probe_of(scene, state));
   if (!surface.lost.empty()) report_lost(state, surface.lost);
-  state.membrane = {.stress = stress, .area = 0, .volume = surface.volume, .solid = surface.solid};
+  state.membrane.stress = stress, state.membrane.volume = surface.volume, state.membrane.solid = surface.solid;
   std::vector<Vec3> force(state.grains.size());
   const auto corners = static_cast<std::size_t>(state.dimension);
   for (const auto& facet : surface.facets) {
@@ -71,8 +71,12 @@ void lay_membrane(const Scene& scene, State& state) {
     const auto share = corners == 3 ? shares_of(facet.corner) : std::array<double, 3>{0.5, 0.5, 0};
     for (std::size_t k = 0; k < corners; ++k) force[facet.grain[k]] -= outward * (stress * share[k]);
   }
-  for (Index g = 0; g < force.size(); ++g)
-    if (dot(force[g], force[g]) > 0) state.applied.push_back({g, force[g]});
+  for (Index g = 0; g < force.size(); ++g) {
+    if (!(dot(force[g], force[g]) > 0)) continue;
+    state.applied.push_back({g, force[g]});
+    state.membrane.net += force[g];
+    for (int k = 0; k < 3; ++k) state.membrane.moment[k] += force[g][k] * state.grains.position[g].vec()[k];
+  }
 }
 
 double applied_work(const State& state, double dt) {

@@ -107,7 +107,7 @@ Packing read_box(const Lines& line) {
   return packing;
 }
 
-void read_grain(const Lines& line, double smallest_edge, Packing& packing) {
+void read_grain(const Lines& line, double smallest_edge, bool wrap, Packing& packing) {
   const auto axes = static_cast<std::size_t>(packing.dimension);
   if (line.count() != axes + 1) {
     const auto rule = fmt::format("holds {} numbers, not {}", line.count(), axes + 1);
@@ -122,7 +122,10 @@ void read_grain(const Lines& line, double smallest_edge, Packing& packing) {
                      fmt::format("makes a grain larger than the cell, whose shortest edge is {}", smallest_edge),
                      "all lengths are in metres");
   Vec3 centre;
-  for (int k = 0; k < packing.dimension; ++k) centre[k] = wrapped(line[static_cast<std::size_t>(k)], packing.box[k]);
+  for (int k = 0; k < packing.dimension; ++k) {
+    const double x = line[static_cast<std::size_t>(k)];
+    centre[k] = wrap ? wrapped(x, packing.box[k]) : x;
+  }
   packing.position.push_back(centre);
   packing.radius.push_back(radius);
 }
@@ -146,7 +149,7 @@ void check_distinct(const Packing& packing, const std::string& file) {
 
 }  // namespace
 
-Packing parse_packing(std::string_view text, const std::string& file) {
+Packing parse_packing(std::string_view text, const std::string& file, bool wrap) {
   check_text(text, file);
   Lines line(text, file);
   if (!line.next())
@@ -155,14 +158,14 @@ Packing parse_packing(std::string_view text, const std::string& file) {
   Packing packing = read_box(line);
   const double smallest =
       std::min({packing.box.x, packing.box.y, packing.dimension == 3 ? packing.box.z : packing.box.y});
-  while (line.next()) read_grain(line, smallest, packing);
+  while (line.next()) read_grain(line, smallest, wrap, packing);
   if (packing.size() == 0)
     throw input_error(file, 0, "is an empty packing:", "no grain follows the cell", "write `x y z r` a line");
   check_distinct(packing, file);
   return packing;
 }
 
-Packing read_packing(const std::string& path) { return parse_packing(read_file(path), path); }
+Packing read_packing(const std::string& path, bool wrap) { return parse_packing(read_file(path), path, wrap); }
 
 void write_packing(const std::string& path, const Packing& packing, std::string_view comment) {
   std::string text;

@@ -8,11 +8,12 @@
 
 namespace eg {
 
-/// Reads a packing; centres outside the cell are wrapped into it. Throws InputError (file:line) for what is no packing.
-Packing read_packing(const std::string& path);
+/// Reads a packing; `wrap`: centres outside the cell are wrapped into it, as suits a periodic one but not walls. Throws
+/// InputError (file:line) for what is no packing.
+Packing read_packing(const std::string& path, bool wrap = true);
 
 /// The same for a text at hand; `file` stands in messages.
-Packing parse_packing(std::string_view text, const std::string& file = "<memory>");
+Packing parse_packing(std::string_view text, const std::string& file = "<memory>", bool wrap = true);
 
 /// Writes the packing so that read_packing() gives back the same numbers; `comment` becomes # lines at the top.
 /// Periodicity is not stored. Throws RunError when the file cannot be written.

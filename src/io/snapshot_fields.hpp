@@ -178,9 +178,11 @@ void visit_glued(Archive& a, G& glued) {
 
 template <class Archive, class M, class F>
 void visit_membrane(Archive& a, M& membrane, F& applied) {
-  auto& [stress, area, volume, solid] = membrane;
+  auto& [stress, area, net, moment, volume, solid] = membrane;
   a.value("membrane/stress", "Pa", stress);
   a.value("membrane/area", "m^2", area);
+  a.value("membrane/net", "N", net);
+  a.value("membrane/moment", "J", moment);
   a.value("membrane/volume", "m^3", volume);
   a.value("membrane/solid", "m^3", solid);
   [[maybe_unused]] const auto [grain, force] = AppliedForce{};  // all its fields

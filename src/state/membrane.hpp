@@ -15,6 +15,8 @@ struct AppliedForce {
 struct Membrane {
   double stress = 0;  ///< with which it presses [Pa] (2D: N/m); 0: there is none
   double area = 0;    ///< of the part that presses on grains, without what walls cover [m²] (2D: m)
+  Vec3 net;           ///< Σ f of its loads [N]
+  Vec3 moment;        ///< Σ f_k x_k of its loads, axis by axis [J]
   double volume = 0;  ///< inside it and the walls that close it [m³] (2D: m²)
   double solid = 0;   ///< volume of grains inside [m³] (2D: m²)
 };

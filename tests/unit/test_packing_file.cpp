@@ -29,7 +29,9 @@ TEST(PackingFile, ReadsDisks) {
 }
 
 TEST(PackingFile, WrapsCentresIntoTheCell) {
-  const auto p = eg::parse_packing("1 1 1\n-0.25 2.5 1 0.1\n-1e-30 1e300 0 0.1\n");
+  const std::string text = "1 1 1\n-0.25 2.5 1 0.1\n-1e-30 1e300 0 0.1\n";
+  EXPECT_EQ(eg::parse_packing(text, "between walls", false).position[0].x, -0.25);
+  const auto p = eg::parse_packing(text);
   EXPECT_EQ(p.position[0].x, 0.75);
   EXPECT_EQ(p.position[0].y, 0.5);
   EXPECT_EQ(p.position[0].z, 0);

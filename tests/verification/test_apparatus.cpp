@@ -209,6 +209,24 @@ TEST(Lost, AGrainThatGoesThroughAWallStopsTheRun) {
   }
 }
 
+TEST(Servo, ThatNothingHoldsStopsTheRun) {
+  const Scene scene = parse_scene(grains + box + R"(
+[[stage]]
+name = "push"
+remove = ["z_low"]
+body = { z_high = { force = 0.1, max_speed = 20 } }
+until = { stress_error = 1e-3 }
+)",
+                                  "a.toml");
+  State state = test::state_of(scene);
+  try {
+    run(scene, state);
+    FAIL() << "the run went on";
+  } catch (const RunError& e) {
+    EXPECT_NE(std::string(e.what()).find("the servo of z_high runs away"), std::string::npos) << e.what();
+  }
+}
+
 /// Stiffness of the packing with columns for the servo's or the free bodies' directions.
 struct Bordered {
   Eigen::MatrixXd k;     ///< grains first, then `directions`
