@@ -17,11 +17,13 @@
 namespace eg {
 namespace {
 
-constexpr std::uint64_t nearest = 4, furthest = 512;     // steps from one check to the next
+constexpr std::uint64_t nearest = 4, furthest = 512;     // steps from one check to the next …
+constexpr std::uint64_t in_flow = 128;                   // … and where forecasts cost too much of the step
 constexpr std::uint64_t youngest = 1000, oldest = 5000;  // steps that a bound may live
 constexpr double slack = 0.05;                           // of an overlap: 2.5 % of the stiffness of a Hertz contact
 constexpr double least_room = 0.04, most_room = 0.25;
-constexpr double gain = 1.04;  // of the step, from which on a renewal was worth its cost
+constexpr double loose = 0.75;  // step over limit, below which forecasts are taken to cost too much
+constexpr double gain = 1.04;   // of the step, from which on a renewal was worth its cost
 
 /// Steps to the next check.
 std::uint64_t look_ahead(const State& state) { return std::clamp(state.policy.ahead, nearest, furthest); }
@@ -116,6 +118,7 @@ void Controller::evaluate(State& state, StepCause cause) {
   if (before > 0) {
     log_.worst_true = std::max(log_.worst_true, plan.dt / plan.unsafe);
     if (plan.unsafe < before) ++log_.outruns;
+    if (before < loose * plan.unsafe && plan.ahead > in_flow) plan.ahead = in_flow;
   }
   choose(state);
 
@@ -143,7 +146,7 @@ bool Controller::still_stands(State& state) {
   log_.examined += result.examined, log_.outgrown += result.outgrown;
   // A stage that begins may set everything in motion at once, and so may collisions.
   plan.ahead = look_ahead(state);
-  plan.ahead = result.outrun ? plan.ahead / 2 : plan.ahead + plan.ahead / 4;
+  plan.ahead = result.outrun ? plan.ahead / 2 : plan.ahead + plan.ahead / (plan.ahead < in_flow ? 4 : 16);
   return result.stands;
 }
 

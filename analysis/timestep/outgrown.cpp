@@ -24,13 +24,13 @@ EG_INLINE Batch least_of(std::span<const double> grains, const Index* i, const I
   return least;
 }
 
-void add_outgrown(const State& state, const CommonMotion& motion, const Mat<Batch>& rate, const Leave& leave, double time,
-                  std::size_t c, std::vector<std::size_t>& found) {
+void add_outgrown(const State& state, const CommonMotion& motion, const Mat<Batch>& rate, const Leave& leave,
+                  double time, std::size_t c, std::vector<std::size_t>& found) {
   const auto& list = state.contacts;
   const Index *i = list.i.data() + c, *j = list.j.data() + c;
   BothSides<Batch> both;
   load_sides<false>(both, state.grains.position.data(), state.grains.velocity.data(), nullptr, i, j,
-                    motion.shift.data(),                    list.image.empty() ? nullptr : list.image.data() + c);
+                    motion.shift.data(), list.image.empty() ? nullptr : list.image.data() + c);
   const Vec<Batch> branch = xyz(both.branch);
   const Batch d2 = max(dot(branch, branch), Batch(1e-300)), inverse = rsqrt(d2);
   const Vec<Batch> velocity = xyz(both.velocity) + rate * branch;

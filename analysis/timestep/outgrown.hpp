@@ -34,6 +34,16 @@ inline void set_direction(StandingBound& bound, std::size_t entry, const Vec3& n
   at(0) = static_cast<float>(n.x), at(1) = static_cast<float>(n.y), at(2) = static_cast<float>(n.z);
 }
 
+/// The same of eight pairs from `entry` on.
+inline void set_directions(StandingBound& bound, std::size_t entry, const Vec<Batch>& n) {
+  float* at = bound.direction.data() + direction_place(entry, 0);
+  for (const Batch* component : {&n.x, &n.y, &n.z}) {
+    const auto f = __builtin_convertvector(component->v, float __attribute__((vector_size(32))));
+    __builtin_memcpy(at, &f, sizeof f);
+    at += Contacts::lanes;
+  }
+}
+
 /// How a contact moves, closing_margin included.
 template <class S>
 struct Approach {

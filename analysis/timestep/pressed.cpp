@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "assembly/damped_stiffness.hpp"
 #include "assembly/linearise.hpp"
 #include "base/power.hpp"
 #include "contact/lanes.hpp"
@@ -10,6 +11,7 @@
 #include "state/damping.hpp"
 #include "state/friction.hpp"
 #include "state/wall_geometry.hpp"
+#include "state/yielding.hpp"
 #include "timestep/outgrown.hpp"
 
 namespace eg {
@@ -43,9 +45,9 @@ double usual_overlap(const StandingBound& bound) {
 template <class S>
 struct Met {
   Geometry<S> g;
-  S radius_i, radii;    ///< R_i, R_i + R_j; wall: R twice
-  S inverse_mass;       ///< 1/m_i + 1/m_j
-  S distance;           ///< length of the branch
+  S radius_i, radii;  ///< R_i, R_i + R_j; wall: R twice
+  S inverse_mass;     ///< 1/m_i + 1/m_j
+  S distance;         ///< length of the branch
   Approach<S> approach;
 };
 
@@ -62,7 +64,7 @@ class Presser {
         kinds_(scene.materials.size()),
         constants_(pair_constants<Law>(scene.materials, friction_in_force(scene, state), scene.dimension)),
         damping_(damping_in_force(scene, state)),
-        gives_(glued_that_gives(state)),
+        yields_(glued_that_yield(state)),
         usual_(usual_overlap(bound_)),
         rows_(state.grains.size()) {
     const bool warm = bound_.value > 0;
@@ -80,27 +82,31 @@ class Presser {
     const auto m = met<Batch>(c);
     const Columns<Batch> side_i = load_rows<Batch>(rows_.data(), i), side_j = load_rows<Batch>(rows_.data(), j);
     const auto pair = this->pair<Batch>(c, m);
-    const Batch touch = allowed(pair, m, max(side_i.x, side_j.x));
-    const Batch reach = select(m.distance > Batch(1e-140), touch, Batch(0.0));  // padding has no length
+    const Batch zero(0.0);
+    const Mask real = m.distance > Batch(1e-140);  // padding has no length
+    const Batch reach = select(real, allowed(pair, m, max(side_i.x, side_j.x)), zero);
     const NormalResponse<Batch> at = response(pair, reach);
-    const Mask counts = reach > Batch(0.0);
-    const Batch kn = select(counts, damped(at.stiffness, m.inverse_mass, damping_.normal_ratio), Batch(0.0));
-    const Batch kt = select(counts, damped(at.tangential, m.inverse_mass, damping_.shear_ratio), Batch(0.0));
+    const Mask counts = reach > zero;
+    const Batch kn = select(counts, damped(at.stiffness, m.inverse_mass, damping_.normal_ratio), zero);
+    const Batch kt = select(counts, damped(at.tangential, m.inverse_mass, damping_.shear_ratio), zero);
     store(c, m, reach, kn, kt, out);
+    const Batch before = max(load_lanes(bound.overlap.data() + c), Batch(0.0));
+    const Mask outran = real & (m.g.overlap > before);
+    for (std::size_t k = 0; k < lanes; ++k) out.outran[c + k] = lane(outran, k);
     store_lanes(out.weight.data() + c, weights(c, side_i, side_j, kn, kt));
+    store_lanes(bound.overlap.data() + c, select(real, reach, Batch(INFINITY)));
+    set_directions(bound, c,
+                   {select(counts, m.g.n.x, zero), select(counts, m.g.n.y, zero), select(counts, m.g.n.z, zero)});
+    if (!HasCouples<Law> && yields_.empty()) return;
     for (std::size_t k = 0; k < lanes; ++k) {
-      if (state_.contacts.is_padding(c + k)) {
-        bound.overlap[c + k] = INFINITY;
-        continue;
-      }
-      if constexpr (HasCouples<Law>)
+      if (state_.contacts.is_padding(c + k)) continue;
+      if constexpr (HasCouples<Law>) {
         add_couples(c + k, reach[k], out);
-      else
+        const Spring& s = out.network.springs[c + k];
+        set_direction(bound, c + k, acts(s) ? s.n : Vec3{});
+      } else {
         give_way(c + k, out);
-      const Spring& s = out.network.springs[c + k];
-      out.outran[c + k] = m.g.overlap[k] > std::max(bound.overlap[c + k], 0.0);
-      bound.overlap[c + k] = reach[k];
-      set_direction(bound, c + k, acts(s) ? s.n : Vec3{});
+      }
     }
   }
 
@@ -149,9 +155,8 @@ class Presser {
   Met<S> met(std::size_t c) const {
     const auto& list = state_.contacts;
     BothSides<S> both;
-    load_sides<false, S>(both, state_.grains.position.data(), state_.grains.velocity.data(), nullptr,
-                         list.i.data() + c, list.j.data() + c, motion_.shift.data(),
-                         list.image.empty() ? nullptr : list.image.data() + c);
+    load_sides<false, S>(both, state_.grains.position.data(), state_.grains.velocity.data(), nullptr, list.i.data() + c,
+                         list.j.data() + c, motion_.shift.data(), list.image.empty() ? nullptr : list.image.data() + c);
     Met<S> m;
     const Vec<S> branch = xyz(both.branch);
     m.g = grain_grain(branch, both.radius_i, both.branch.w, arms_);
@@ -165,7 +170,12 @@ class Presser {
     const auto& contact = state_.wall_contacts[w];
     const Quad& p = state_.grains.position[contact.grain];
     const auto g = grain_wall(state_, state_.walls[contact.wall], p.vec(), p.w, arms_);
-    return {g, p.w, 2 * p.w, state_.grains.velocity[contact.grain].w, p.w - g.overlap, motion_.at_wall(state_, contact, g.n)};
+    return {g,
+            p.w,
+            2 * p.w,
+            state_.grains.velocity[contact.grain].w,
+            p.w - g.overlap,
+            motion_.at_wall(state_, contact, g.n)};
   }
 
   template <class S>
@@ -206,8 +216,8 @@ class Presser {
   template <class S>
   S foreseen(const Pair<S>& pair, const Met<S>& m) const {
     const S growth = m.approach.speed * S(options_.time), grown = m.g.overlap + growth;
-    const S energy = select(m.inverse_mass > S(0.0), m.approach.speed * m.approach.speed *
-                                                         reciprocal(max(m.inverse_mass, S(1e-300))), S(0.0));
+    const S energy = select(m.inverse_mass > S(0.0),
+                            m.approach.speed * m.approach.speed * reciprocal(max(m.inverse_mass, S(1e-300))), S(0.0));
     const S most = energy + S(2.0) * stored(Law::template normal<S>(pair, max(m.g.overlap, S(0.0))));
     S reach = grown;
     for (int step = 0; step < 4; ++step) {
@@ -265,7 +275,7 @@ class Presser {
   }
 
   void give_way(std::size_t c, Pressed& out) const {
-    if (gives_.empty() || !(gives_[state_.contacts.i[c]] | gives_[state_.contacts.j[c]])) return;
+    if (yields_.empty() || !(yields_[state_.contacts.i[c]] | yields_[state_.contacts.j[c]])) return;
     Spring& s = out.network.springs[c];
     s.normal *= yielding, s.tangential *= yielding;
   }
@@ -314,7 +324,8 @@ class Presser {
     return c;
   }
   Counted counted(std::size_t c, const Met<double>& m, double reach) const {
-    const double give = !gives_.empty() && (gives_[state_.contacts.i[c]] | gives_[state_.contacts.j[c]]) ? yielding : 1;
+    const double give =
+        !yields_.empty() && (yields_[state_.contacts.i[c]] | yields_[state_.contacts.j[c]]) ? yielding : 1;
     return counted(pair<double>(c, m), reach, m.inverse_mass, give,
                    [&](std::size_t h) { return state_.contacts.history_at(c, h); });
   }
@@ -333,7 +344,7 @@ class Presser {
   std::size_t kinds_;
   std::vector<Constants<double>> constants_;
   DampingSpec damping_;
-  std::vector<std::uint8_t> gives_;
+  std::vector<std::uint8_t> yields_;
   double usual_;
   std::vector<Quad> rows_;  ///< of grains: bound, room below sigma, what kn and kt are divided by
 };
@@ -347,16 +358,13 @@ double centred_weight(double a_i, double room_i, double a_j, double room_j) {
 
 double room_below(double sigma, double bound) { return std::max(nearest * sigma, sigma - bound); }
 
-bool acts(const Spring& s) { return s.normal > 0 || s.tangential > 0; }
-
 void lay_out(const Scene& scene, const State& state, Pressed& out) {
   const auto& list = state.contacts;
   out.network = bare_network(scene, state);
   auto& springs = out.network.springs;
   bool couples = false;
-  with_law(scene.contact.law, [&]<class Law>(Law) {
-    couples = HasCouples<Law> && state.grains.rotates() && list.history_vectors > 0;
-  });
+  with_law(scene.contact.law,
+           [&]<class Law>(Law) { couples = HasCouples<Law> && state.grains.rotates() && list.history_vectors > 0; });
   const std::size_t contacts = list.size() + state.wall_contacts.size();
   springs.reserve(couples ? 3 * contacts : contacts);
   const auto add = [&](Index i, Index j, bool couple) {
@@ -380,7 +388,8 @@ void press_contacts(const Scene& scene, State& state, const PressOptions& option
   StandingBound& bound = state.policy.bound;
   const auto& list = state.contacts;
   const auto& g = state.grains;
-  for (std::size_t i = 0; i < g.size(); ++i) out.network.inverse_mass[i] = g.velocity[i].w, out.network.radius[i] = g.radius(i);
+  for (std::size_t i = 0; i < g.size(); ++i)
+    out.network.inverse_mass[i] = g.velocity[i].w, out.network.radius[i] = g.radius(i);
   if (g.rotates())
     for (std::size_t i = 0; i < g.size(); ++i) out.network.inverse_inertia[i] = g.spin[i].w;
   const bool warm = bound.value > 0;

@@ -14,7 +14,8 @@ struct PressOptions {
 };
 
 /// All listed contacts. Springs stand as in the lists, those that are not counted with no stiffness: pairs (padding
-/// too), then walls, then, for laws with couples, those of all these against grain i and those of pairs against grain j.
+/// too), then walls, then, for laws with couples, those of all these against grain i and those of pairs against grain
+/// j.
 struct Pressed {
   Network network;
   std::size_t couples = 0;           ///< number of contacts, so where couples begin; 0: there are none
@@ -24,12 +25,12 @@ struct Pressed {
 };
 
 /// Whether a spring is counted.
-bool acts(const Spring& s);
+inline bool acts(const Spring& s) { return s.normal > 0 || s.tangential > 0; }
 
 /// The springs of the present lists, all without stiffness.
 void lay_out(const Scene& scene, const State& state, Pressed& out);
-/// Takes all contacts for what they may be. Sets overlap and direction of state.policy.bound, reads the rest of it; with
-/// bound.value == 0 all weights are 1.
+/// Takes all contacts for what they may be. Sets overlap and direction of state.policy.bound, reads the rest of it;
+/// with bound.value == 0 all weights are 1.
 void press_contacts(const Scene& scene, State& state, const PressOptions& options, Pressed& out);
 
 /// What a contact counts as; stiffnesses of the damped network.

@@ -12,7 +12,7 @@ namespace eg {
 namespace {
 
 constexpr double straight = 2;         // no two unit vectors are further apart
-constexpr std::size_t few = 32;        // one in so many contacts beyond what it is allowed: taken one by one
+constexpr std::size_t few = 16;        // one in so many contacts beyond what it is allowed: taken one by one
 constexpr std::size_t looked_at = 64;  // stiffest grains, for a lower bound
 constexpr double tight = 0.97;         // of the bound: from here on weights are improved in a check
 
@@ -36,10 +36,15 @@ double largest(const std::vector<double>& values) {
   return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
 }
 
-/// Centred weights leave more room for pairs to come, as long as no grain passes sigma by them.
-void spread_out(const Sides& sides, double sigma, int sweeps, ScalarWeights& weights) {
+std::vector<Index> all_grains(const Sides& sides) {
   std::vector<Index> all(sides.size());
   std::iota(all.begin(), all.end(), Index{0});
+  return all;
+}
+
+/// Centred weights leave more room for pairs to come, as long as no grain passes sigma by them.
+void spread_out(const Sides& sides, double sigma, int sweeps, ScalarWeights& weights) {
+  const std::vector<Index> all = all_grains(sides);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     std::vector<double> t = centre(sides, weights.ranges, sigma, weights.t);
     BlockRanges ranges(sides.size());
@@ -122,23 +127,36 @@ void StandingBounds::keep(StandingBound& bound, const ScalarWeights& weights, co
   }
 }
 
-bool StandingBounds::fits(State& state) {
-  StandingBound& bound = state.policy.bound;
-  ScalarWeights found = sweep_scalars(*sides_, {.most = 4, .target = tight * bound.value, .start = pressed_.weight});
-  const std::vector<GrainPlay> plays = plays_of(*sides_, found.t, pressed_.motion);
-  bool all = true;
+std::vector<Index> StandingBounds::beyond(const StandingBound& bound, const ScalarWeights& found,
+                                          const std::vector<GrainPlay>& plays) const {
+  std::vector<Index> grains;
   for (Index g = 0; g < plays.size(); ++g) {
     const double most = bound.value - std::max(plays[g].counted, plays[g].ahead);
-    if (found.ranges.high[g] < most || block_is_below(block_of(*sides_, found.t, g), sides_->of(g).size(), most))
-      continue;
-    all = false;
-    for (const Side& side : sides_->of(g)) outrun_ = outrun_ || pressed_.outran[side.spring];
+    if (!(found.ranges.high[g] < most) && !block_is_below(block_of(*sides_, found.t, g), sides_->of(g).size(), most))
+      grains.push_back(g);
   }
-  if (all)
+  return grains;
+}
+
+bool StandingBounds::fits(State& state) {
+  StandingBound& bound = state.policy.bound;
+  ScalarWeights found{pressed_.weight, BlockRanges(sides_->size())};
+  block_ranges(*sides_, found.t, all_grains(*sides_), found.ranges);
+  std::vector<GrainPlay> plays = plays_of(*sides_, found.t, pressed_.motion);
+  std::vector<Index> grains = beyond(bound, found, plays);
+  if (!grains.empty()) {
+    found = sweep_scalars(*sides_, {.most = 4, .target = tight * bound.value, .start = pressed_.weight});
+    plays = plays_of(*sides_, found.t, pressed_.motion);
+    grains = beyond(bound, found, plays);
+  }
+  if (grains.empty()) {
     keep(bound, found, plays);
-  else
-    weights_ = std::move(found);
-  return all;
+    return true;
+  }
+  for (const Index g : grains)
+    for (const Side& side : sides_->of(g)) outrun_ = outrun_ || pressed_.outran[side.spring];
+  weights_ = std::move(found);
+  return false;
 }
 
 double StandingBounds::renew(State& state, const RenewOptions& options) {
@@ -157,7 +175,8 @@ double StandingBounds::renew(State& state, const RenewOptions& options) {
   for (double& high : found.ranges.high) high = std::min(high, needed);
   const std::vector<GrainPlay> plays = plays_of(*sides_, found.t, pressed_.motion);
   double most = 0;
-  for (Index g = 0; g < plays.size(); ++g) most = std::max(most, found.ranges.high[g] + std::max(plays[g].counted, plays[g].ahead));
+  for (Index g = 0; g < plays.size(); ++g)
+    most = std::max(most, found.ranges.high[g] + std::max(plays[g].counted, plays[g].ahead));
   bound.value = std::max(sigma, most * (1 + 0.2 * options.room));
   bound.weight.resize(state.contacts.size());
   keep(bound, found, plays);
@@ -266,8 +285,10 @@ bool StandingBounds::allow_more(State& state, const ContactSelection& selection,
   const std::size_t asked = selection.grains.size() + selection.walls.size();
   if (asked * few > state.contacts.size() + state.wall_contacts.size()) return false;
   bool below = true;
-  for (const Beyond& b : look_beyond(scene_, state, selection, turn_, {time, slack}))
-    below = add_excess(state, b) && below;
+  for (const Beyond& b : look_beyond(scene_, state, selection, turn_, {time, slack})) {
+    if (add_excess(state, b)) continue;
+    below = false, outrun_ = outrun_ || b.outran;
+  }
   return below;
 }
 
@@ -278,13 +299,13 @@ StandingCheck StandingBounds::check(State& state, double time, double slack) {
   const Leave leave{bound, turn_};
   const auto pairs = outgrown_pairs(state, leave, time), walls = outgrown_walls(state, leave, time);
   StandingCheck result;
+  outrun_ = false;
   result.outgrown = pairs.size() + walls.size();
   if (allow_more(state, {pairs, walls}, time, slack)) return result;
   press(state, time, slack);
   result.examined = state.grains.size();
-  outrun_ = false;
   result.stands = fits(state);
-  result.outrun = outrun_;
+  result.outrun = outrun_ && !result.stands;
   return result;
 }
 

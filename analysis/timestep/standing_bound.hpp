@@ -16,11 +16,11 @@
 namespace eg {
 
 struct RenewOptions {
-  double time = 0;   ///< until the next check [s]
-  double slack = 0;  ///< by which every overlap may grow before it counts as outgrown [-]
-  double room = 0;   ///< by which the bound is to exceed what the packing needs now [-]
-  double floor = 0;  ///< least value of the bound [1/s²]
-  double step = 0;   ///< at which dashpots are counted [s] (damped_network)
+  double time = 0;     ///< until the next check [s]
+  double slack = 0;    ///< by which every overlap may grow before it counts as outgrown [-]
+  double room = 0;     ///< by which the bound is to exceed what the packing needs now [-]
+  double floor = 0;    ///< least value of the bound [1/s²]
+  double step = 0;     ///< at which dashpots are counted [s] (damped_network)
   bool afresh = true;  ///< false: a check that failed just now has looked at all contacts, for the same time and step
 };
 
@@ -59,6 +59,9 @@ class StandingBounds {
   void press(State& state, double time, double slack);
   /// Whether all S_i are below the bound as all contacts may be; if so, the bound goes by that from now on.
   bool fits(State& state);
+  /// Grains that are not proved below the bound.
+  std::vector<Index> beyond(const StandingBound& bound, const ScalarWeights& found,
+                            const std::vector<GrainPlay>& plays) const;
   void keep(StandingBound& bound, const ScalarWeights& weights, const std::vector<GrainPlay>& plays);
   bool has_lists_of(const State& state) const;
   /// The contacts of these grains as they are, springs of the damped network without couples.
@@ -72,8 +75,8 @@ class StandingBounds {
   std::vector<std::size_t> fresh_;           ///< pairs that follow() met for the first time
   Pressed pressed_;                          ///< of the present lists once sides_ is set
   std::optional<Sides> sides_;
-  std::optional<ScalarWeights> weights_;     ///< of a check that failed …
-  bool outrun_ = false;                      ///< … because contacts had gone beyond what they were allowed before it
+  std::optional<ScalarWeights> weights_;  ///< of a check that failed …
+  bool outrun_ = false;                   ///< … because contacts had gone beyond what they were allowed before it
 };
 
 }  // namespace eg

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "assembly/damped_stiffness.hpp"
+
 namespace eg {
 
 namespace {

@@ -3,7 +3,6 @@
 // velocity half a step back, M(x₊ − 2x + x₋) = −Δt² K x − Δt C (x − x₋), which is stable exactly while
 // 4M − 2Δt C − Δt² K is positive definite (docs/damping.md).
 #include "assembly/network.hpp"
-#include "base/number.hpp"
 #include "state/scene.hpp"
 
 namespace eg {
@@ -16,13 +15,7 @@ Network dashpots(const Network& network, const DampingSpec& damping);
 /// (1 + α)(K + 2C/Δt) as a network: the springs that the mode that flips at every step feels, α from local damping
 /// (which then adds to every force), C from the dashpots. With c the mass damping, that mode is neutral at
 /// Δt² λmax + 2c Δt = 4. `step`: Δt [s], > 0.
-/// `inverse_mass`: 1/m_i + 1/m_j [1/kg]. Couples have no dashpot.
-template <class S>
-S damped_stiffness(const S& stiffness, const S& inverse_mass, double ratio, double local, double step) {
-  if (!(ratio > 0)) return S(1 + local) * stiffness;
-  const S mass = select(inverse_mass > S(0.0), reciprocal(max(inverse_mass, S(1e-300))), S(0.0));
-  return S(1 + local) * (stiffness + S(4 * ratio / step) * root(mass * stiffness));
-}
+/// `inverse_mass`: 1/m_i + 1/m_j [1/kg].
 Spring damped_spring(Spring spring, double inverse_mass, const DampingSpec& damping, double step);
 Network damped_network(const Network& network, const DampingSpec& damping, double step);
 
