@@ -17,11 +17,13 @@
 namespace eg {
 namespace {
 
-constexpr std::uint64_t nearest = 4, furthest = 512;     // steps from one check to the next
+constexpr std::uint64_t nearest = 4, furthest = 512;     // steps from one check to the next …
+constexpr std::uint64_t in_flow = 128;                   // … and where forecasts cost too much of the step
 constexpr std::uint64_t youngest = 1000, oldest = 5000;  // steps that a bound may live
 constexpr double slack = 0.05;                           // of an overlap: 2.5 % of the stiffness of a Hertz contact
 constexpr double least_room = 0.04, most_room = 0.25;
-constexpr double gain = 1.04;  // of the step, from which on a renewal was worth its cost
+constexpr double loose = 0.75;  // step over limit, below which forecasts are taken to cost too much
+constexpr double gain = 1.04;   // of the step, from which on a renewal was worth its cost
 
 /// Steps to the next check.
 std::uint64_t look_ahead(const State& state) { return std::clamp(state.policy.ahead, nearest, furthest); }
@@ -99,13 +101,15 @@ void Controller::evaluate(State& state, StepCause cause) {
 
   const double cap = free_limit(state), before = plan.safe;
   const double dt = plan.dt > 0 ? plan.dt : scene_.timestep.safety * cap;
-  const double time = static_cast<double>(look_ahead(state)) * dt;
+  // what a failed check has looked at serves until it was for
+  const bool checked = cause == StepCause::growth && !damping_in_force(scene_, state).dashpots();
+  const double time = static_cast<double>(checked ? plan.check - state.step : look_ahead(state)) * dt;
   const DampingSpec damping = damping_in_force(scene_, state);
   double lower = 0;
   const auto renew = [&](double step) {
     // most of the room goes to what all contacts (of Hertz) may grow by together, the rest to single ones
     const double growth = 1 + 0.4 * plan.room;
-    lower = bounds_.renew(state, {time, growth * growth - 1, 0.6 * plan.room, 4 / (cap * cap), step});
+    lower = bounds_.renew(state, {time, growth * growth - 1, 0.6 * plan.room, 4 / (cap * cap), step, !checked});
     plan.safe = std::min(cap, proved_damped_step(plan.bound.value, damping, step));
   };
   renew(before > 0 ? before : cap);
@@ -114,6 +118,7 @@ void Controller::evaluate(State& state, StepCause cause) {
   if (before > 0) {
     log_.worst_true = std::max(log_.worst_true, plan.dt / plan.unsafe);
     if (plan.unsafe < before) ++log_.outruns;
+    if (before < loose * plan.unsafe && plan.ahead > in_flow) plan.ahead = in_flow;
   }
   choose(state);
 
@@ -133,18 +138,15 @@ void Controller::evaluate(State& state, StepCause cause) {
 
 bool Controller::still_stands(State& state) {
   auto& plan = state.policy;
-  const bool due = state.step >= plan.check;
-  if (due) plan.check = state.step + look_ahead(state);
-  const double time = static_cast<double>(plan.check - state.step) * plan.dt;
-  const auto result = due ? bounds_.check(state, time, slack) : bounds_.check_fresh(state, time, slack);
   ++log_.checks;
+  const auto ahead = [&] { return static_cast<double>(plan.check - state.step) * plan.dt; };
+  if (state.step < plan.check && bounds_.check_fresh(state, ahead(), slack)) return true;
+  plan.check = state.step + look_ahead(state);
+  const auto result = bounds_.check(state, ahead(), slack);
   log_.examined += result.examined, log_.outgrown += result.outgrown;
   // A stage that begins may set everything in motion at once, and so may collisions.
   plan.ahead = look_ahead(state);
-  if (result.outrun && !result.stands)
-    plan.ahead /= 2;
-  else if (due)
-    plan.ahead += plan.ahead / 4;
+  plan.ahead = result.outrun ? plan.ahead / 2 : plan.ahead + plan.ahead / (plan.ahead < in_flow ? 4 : 16);
   return result.stands;
 }
 

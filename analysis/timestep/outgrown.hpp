@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "base/number.hpp"
 #include "state/gather.hpp"
 
 namespace eg {
@@ -33,13 +34,45 @@ inline void set_direction(StandingBound& bound, std::size_t entry, const Vec3& n
   at(0) = static_cast<float>(n.x), at(1) = static_cast<float>(n.y), at(2) = static_cast<float>(n.z);
 }
 
-/// How far a pair may be pressed in that time [s]: straight on with closing_margin times its closing speed, and at most
-/// until that motion is used up twice. j == no_index: a wall, the fastest there is.
-OverlapForecast forecast(const State& state, Index i, Index j, const Geometry<double>& g, double time);
+/// The same of eight pairs from `entry` on.
+inline void set_directions(StandingBound& bound, std::size_t entry, const Vec<Batch>& n) {
+  float* at = bound.direction.data() + direction_place(entry, 0);
+  for (const Batch* component : {&n.x, &n.y, &n.z}) {
+    const auto f = __builtin_convertvector(component->v, float __attribute__((vector_size(32))));
+    __builtin_memcpy(at, &f, sizeof f);
+    at += Contacts::lanes;
+  }
+}
 
-/// By how much the direction of a contact may change in that time, |Δn|, going straight on with closing_margin times
-/// its speed.
-double turn_forecast(const State& state, const ContactPoint& p, double time);
+/// How a contact moves, closing_margin included.
+template <class S>
+struct Approach {
+  S speed;    ///< at which its overlap grows [m/s], ≥ 0 …
+  S driven;   ///< … and what the cell or a wall has in it, which no contact force stops
+  S turning;  ///< rate of its direction, |dn/dt| [1/s]
+};
+
+/// What makes the approach of all contacts of a state.
+struct CommonMotion {
+  std::array<Quad, Cell::images> shift;  ///< of periodic images [m]
+  Mat3 closing;             ///< velocity gradient by which surfaces close in: the cell's, and growing radii
+  double fastest_wall = 0;  ///< [m/s]
+
+  explicit CommonMotion(const State& state);
+
+  /// `velocity`: of j against i [m/s], peculiar; `inverse_distance`: 1/|branch|.
+  template <class S>
+  EG_INLINE Approach<S> approach(const Vec<S>& n, const Vec<S>& branch, const Vec<S>& velocity,
+                                 const S& inverse_distance) const {
+    Mat<S> gradient;
+    for (std::size_t k = 0; k < 9; ++k) gradient.a[k] = S(closing.a[k]);
+    const Vec<S> affine = gradient * branch, all = velocity + affine;
+    const S opening = dot(all, n), zero(0.0), margin(closing_margin);
+    return {margin * max(-opening, zero), margin * max(-dot(affine, n), zero),
+            margin * root(max(dot(all, all) - opening * opening, zero)) * inverse_distance};
+  }
+  Approach<double> at_wall(const State& state, const WallContact& contact, const Vec3& n) const;
+};
 
 /// Pairs of State::contacts whose overlap or direction, going straight on, passes what is allowed, some whose direction
 /// only comes near it; ascending.

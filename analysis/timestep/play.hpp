@@ -1,5 +1,7 @@
 #pragma once
 // How much S_i of contact splitting may change while a contact turns and its arms follow the overlap (certificates.md).
+#include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -14,11 +16,17 @@ inline constexpr double sum_rounding = 1 + 1e-11;  ///< of sums of a few dozen p
 struct Inertia {
   double inverse_mass, inverse_inertia, radius;
 };
-Inertia inertia_of(const Network& net, Index g);
-Inertia inertia_of(const Grains& g, Index i);
+inline Inertia inertia_of(const Network& net, Index g) {
+  return {net.inverse_mass[g], net.rotation ? net.inverse_inertia[g] : 0.0, net.radius[g]};
+}
+inline Inertia inertia_of(const Grains& g, Index i) {
+  return {g.velocity[i].w, g.rotates() ? g.spin[i].w : 0.0, g.radius(i)};
+}
 
 /// The largest that a spring can add to λmax(S_i) of a grain at weight 1 (arm ≤ R) [1/s²].
-double most_added(double kn, double kt, const Inertia& g);
+inline double most_added(double kn, double kt, const Inertia& g) {
+  return std::max(kn * g.inverse_mass, kt * (g.inverse_mass + g.inverse_inertia * g.radius * g.radius));
+}
 
 /// What a contact may add to λmax(S_i) of a grain at weight 1 as it moves [1/s²].
 struct Play {
@@ -26,10 +34,18 @@ struct Play {
   double arm = 0;   ///< as its arm follows the overlap, in all
 };
 
-/// `reach`: the overlap allowed [m].
-Play play(double kn, double kt, double reach, const Inertia& g);
+/// `reach`: the overlap allowed [m]. Of S_i, the block of translations changes by at most |kn − kt| |n − n₀|, that of
+/// rotations by kt a² as much, those beside by kt a as much. An arm changes by no more than half of the overlap.
+inline Play play(double kn, double kt, double reach, const Inertia& g) {
+  const double shift = std::abs(kn - kt) * g.inverse_mass, turn = kt * g.radius * g.radius * g.inverse_inertia,
+               mixed = kt * g.radius * std::sqrt(g.inverse_mass * g.inverse_inertia);
+  const double norm = 0.5 * (shift + turn) + std::sqrt(0.25 * (shift - turn) * (shift - turn) + mixed * mixed);
+  return {norm * sum_rounding, (0.5 * mixed + turn) * std::max(0.0, reach) / g.radius * sum_rounding};
+}
 /// The same of a spring of couples.
-Play play_of_couple(double twisting, double rolling, const Inertia& g);
+inline Play play_of_couple(double twisting, double rolling, const Inertia& g) {
+  return {std::abs(twisting - rolling) * g.inverse_inertia * sum_rounding, 0};
+}
 
 /// How a spring that is counted may move.
 struct SpringMotion {

@@ -40,6 +40,7 @@ class HotSet {
     for (const Side& side : sides_.of(g)) {
       if (side.role == Side::Role::alone) continue;
       const Spring& s = sides_.network().springs[side.spring];
+      if (!(s.normal > 0 || s.tangential > 0)) continue;
       const Index other = s.i == g ? s.j : s.i;
       if (mark_[other] != hot) springs.push_back(side.spring);
       if (mark_[other] == cold) mark_[other] = neighbour, grains.push_back(other);

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "assembly/damped_stiffness.hpp"
+
 namespace eg {
 
 namespace {
@@ -27,9 +29,11 @@ Network dashpots(const Network& network, const DampingSpec& damping) {
 }
 
 Spring damped_spring(Spring spring, double inverse_mass, const DampingSpec& damping, double step) {
-  const Spring c = damping.dashpots() ? dashpot(spring, inverse_mass, damping) : Spring{};
-  spring.normal = (1 + damping.local) * (spring.normal + 2 * c.normal / step);
-  spring.tangential = (1 + damping.local) * (spring.tangential + 2 * c.tangential / step);
+  const auto damped = [&](double k, double ratio) {
+    return damped_stiffness(k, inverse_mass, spring.couple ? 0.0 : ratio, damping.local, step);
+  };
+  spring.normal = damped(spring.normal, damping.normal_ratio);
+  spring.tangential = damped(spring.tangential, damping.shear_ratio);
   return spring;
 }
 

@@ -5,13 +5,10 @@
 #include "contact/laws.hpp"
 #include "state/friction.hpp"
 #include "state/wall_geometry.hpp"
+#include "state/yielding.hpp"
 
 namespace eg {
 namespace {
-
-/// A body of mass m ≥ ¾ K Δt², or a servo that takes no more than ⅔ of the way at once, adds no more to λmax than half
-/// the stiffness of its contacts again (docs/walls.md).
-constexpr double yielding = 1.5;
 
 template <class Law>
 class Gatherer {
@@ -20,17 +17,15 @@ class Gatherer {
       : state_(state),
         kinds_(scene.materials.size()),
         arms_(arms_of(scene)),
-        constants_(pair_constants<Law>(scene.materials, friction_in_force(scene, state), scene.dimension)) {
-    if (!state.glued.empty()) glued_to_.assign(state.grains.size(), no_index);
-    for (const auto& g : state.glued) glued_to_[g.grain] = g.body;
-  }
+        constants_(pair_constants<Law>(scene.materials, friction_in_force(scene, state), scene.dimension)),
+        yields_(glued_that_yield(state)) {}
 
-  void pair(std::size_t c, const std::function<void(const ContactPoint&)>& visit, const OverlapGrowth& growth) const {
+  void pair(std::size_t c, const std::function<void(const ContactPoint&)>& visit) const {
     const auto& list = state_.contacts;
     const auto& g = state_.grains;
     if (list.is_padding(c)) return;
     ContactPoint p;
-    if (!glued_to_.empty() && (glued_gives(list.i[c]) || glued_gives(list.j[c]))) p.give = yielding;
+    if (!yields_.empty() && (yields_[list.i[c]] | yields_[list.j[c]]) != 0) p.give = yielding;
     p.i = list.i[c], p.j = list.j[c], p.entry = c;
     p.branch = g.position[p.j].vec() + state_.cell.shift(list.image_of(c)) - g.position[p.i].vec();
     p.geometry = grain_grain(p.branch, g.radius(p.i), g.radius(p.i) + g.radius(p.j), arms_);
@@ -38,10 +33,10 @@ class Gatherer {
                                            grain_sizes(g.radius(p.i), g.radius(p.j)));
     if (!list.friction.empty()) pair.friction *= list.friction[c];
     respond(
-        p, pair, [&](std::size_t h) { return list.history_at(c, h); }, visit, growth);
+        p, pair, [&](std::size_t h) { return list.history_at(c, h); }, visit);
   }
 
-  void wall(std::size_t c, const std::function<void(const ContactPoint&)>& visit, const OverlapGrowth& growth) const {
+  void wall(std::size_t c, const std::function<void(const ContactPoint&)>& visit) const {
     const auto& g = state_.grains;
     const auto& contact = state_.wall_contacts[c];
     const Wall& wall = state_.walls[contact.wall];
@@ -54,27 +49,26 @@ class Gatherer {
     auto pair = Law::template pair<double>(constants_[g.material_of(p.i) * kinds_ + wall.material], wall_sizes(radius));
     pair.friction *= contact.friction;
     respond(
-        p, pair, [&](std::size_t h) { return contact.history[h]; }, visit, growth);
+        p, pair, [&](std::size_t h) { return contact.history[h]; }, visit);
   }
 
  private:
   template <class History>
   void respond(ContactPoint& p, const typename Law::template Pair<double>& pair, const History& stored,
-               const std::function<void(const ContactPoint&)>& visit, const OverlapGrowth& growth) const {
-    p.reach = p.geometry.overlap;
-    if (growth) p.reach = foreseen(p.geometry.overlap, growth(p), pair);
-    bool acts = p.reach > 0;
+               const std::function<void(const ContactPoint&)>& visit) const {
+    const double overlap = p.geometry.overlap;
+    bool acts = overlap > 0;
     if constexpr (HasBonds<Law>) acts = acts || stored(Law::bond_value) > 0;
     if (!acts) return;
     Standing s;
     if (state_.contacts.history_vectors == 0) {
-      s = standing_springs<Frictionless<Law>>(pair, p.reach, {});
+      s = standing_springs<Frictionless<Law>>(pair, overlap, {});
     } else if constexpr (HasCouples<Law>) {
       ContactHistory<Law, double> history;
       for (std::size_t h = 0; h < history.size(); ++h) history[h] = stored(h);
-      s = Law::at_rest(pair, p.reach, history);
+      s = Law::at_rest(pair, overlap, history);
     } else {
-      s = standing_springs<Law>(pair, p.reach, {stored(0), stored(1), stored(2)});
+      s = standing_springs<Law>(pair, overlap, {stored(0), stored(1), stored(2)});
     }
     p.normal = s.normal, p.shear = s.shear, p.rolling = s.rolling, p.twisting = s.twisting;
     p.normal_energy = s.normal_energy, p.shear_energy = s.shear_energy, p.bonded = s.bonded;
@@ -82,47 +76,29 @@ class Gatherer {
     visit(p);
   }
 
-  /// The overlap grown, but no further than to where the energy is taken up. With U ~ δ^q, q = Nδ/U, a step is exact
-  /// for the power laws of springs and Hertz contacts; others come near in a few, from either side.
-  static double foreseen(double overlap, const OverlapForecast& f, const typename Law::template Pair<double>& pair) {
-    double reach = overlap + f.growth;
-    if (!(reach > 0) || !std::isfinite(f.energy)) return reach;
-    const double most = f.energy + (overlap > 0 ? 2 * Law::normal_energy(pair, overlap) : 0.0);
-    double stored = Law::normal_energy(pair, reach);
-    for (int step = 0; step < 6 && (step > 0 || stored > most) && std::abs(stored - most) > 1e-3 * most; ++step) {
-      const double force = Law::template normal<double>(pair, reach).force;
-      reach *= std::pow(most / stored, stored / (force * reach));
-      stored = Law::normal_energy(pair, reach);
-    }
-    return std::max(reach, overlap + std::min(f.driven, f.growth));
-  }
-
-  bool glued_gives(Index grain) const { return glued_to_[grain] != no_index && state_.bodies[glued_to_[grain]].yields; }
-
   const State& state_;
-  std::vector<Index> glued_to_;  ///< body of every grain; empty when nothing is glued
   std::size_t kinds_;
   Arms arms_;
   std::vector<typename Law::template Constants<double>> constants_;
+  std::vector<std::uint8_t> yields_;
 };
 
 }  // namespace
 
-void visit_contacts(const Scene& scene, const State& state, const std::function<void(const ContactPoint&)>& visit,
-                    const OverlapGrowth& growth) {
+void visit_contacts(const Scene& scene, const State& state, const std::function<void(const ContactPoint&)>& visit) {
   with_law(scene.contact.law, [&]<class Law>(Law) {
     const Gatherer<Law> gatherer(scene, state);
-    for (std::size_t c = 0; c < state.contacts.size(); ++c) gatherer.pair(c, visit, growth);
-    for (std::size_t c = 0; c < state.wall_contacts.size(); ++c) gatherer.wall(c, visit, growth);
+    for (std::size_t c = 0; c < state.contacts.size(); ++c) gatherer.pair(c, visit);
+    for (std::size_t c = 0; c < state.wall_contacts.size(); ++c) gatherer.wall(c, visit);
   });
 }
 
 void visit_contacts(const Scene& scene, const State& state, const ContactSelection& selection,
-                    const std::function<void(const ContactPoint&)>& visit, const OverlapGrowth& growth) {
+                    const std::function<void(const ContactPoint&)>& visit) {
   with_law(scene.contact.law, [&]<class Law>(Law) {
     const Gatherer<Law> gatherer(scene, state);
-    for (const std::size_t c : selection.grains) gatherer.pair(c, visit, growth);
-    for (const std::size_t c : selection.walls) gatherer.wall(c, visit, growth);
+    for (const std::size_t c : selection.grains) gatherer.pair(c, visit);
+    for (const std::size_t c : selection.walls) gatherer.wall(c, visit);
   });
 }
 

@@ -17,7 +17,6 @@ struct ContactPoint {
   std::size_t entry = 0;  ///< place in State::contacts or State::wall_contacts
   Vec3 branch;            ///< x_j − x_i [m]; wall: from the centre to the contact plane
   Geometry<double> geometry;
-  double reach = 0;               ///< overlap that `normal` and all below belong to [m]: the present one or a foreseen
   NormalResponse<double> normal;  ///< N, kn, kt
   Vec3 shear;                     ///< T [N], acts on i as +T; force on j is N n − T
   double limit = 0;               ///< µN [N]
@@ -31,19 +30,8 @@ struct ContactPoint {
   bool sliding() const { return !bonded && norm(shear) >= limit * (1 - 1e-9); }
 };
 
-/// What may press a pair further than it is now.
-struct OverlapForecast {
-  double growth = 0;         ///< of the overlap at most [m] …
-  double energy = INFINITY;  ///< … and no further than until the contact stores this more than twice its own [J] …
-  double driven = 0;         ///< … but in any case so far [m]: what the cell or a wall does, whatever it takes
-};
-/// Asked of every listed contact; of the point it is shown, all up to `geometry` is set.
-using OverlapGrowth = std::function<OverlapForecast(const ContactPoint&)>;
-
-/// Calls visit for every contact that touches or is bonded (with `growth`: that may come to touch; N, kn and kt are
-/// then those of the overlap foreseen). Order: grain contacts as listed, then walls.
-void visit_contacts(const Scene& scene, const State& state, const std::function<void(const ContactPoint&)>& visit,
-                    const OverlapGrowth& growth = {});
+/// Calls visit for every contact that touches or is bonded. Order: grain contacts as listed, then walls.
+void visit_contacts(const Scene& scene, const State& state, const std::function<void(const ContactPoint&)>& visit);
 
 /// Places in State::contacts and State::wall_contacts, ascending.
 struct ContactSelection {
@@ -52,7 +40,7 @@ struct ContactSelection {
 
 /// The same for some contacts only.
 void visit_contacts(const Scene& scene, const State& state, const ContactSelection& selection,
-                    const std::function<void(const ContactPoint&)>& visit, const OverlapGrowth& growth = {});
+                    const std::function<void(const ContactPoint&)>& visit);
 
 Arms arms_of(const Scene& scene);
 

@@ -1,0 +1,420 @@
+#include "timestep/pressed.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "assembly/damped_stiffness.hpp"
+#include "assembly/linearise.hpp"
+#include "base/power.hpp"
+#include "contact/lanes.hpp"
+#include "contact/laws.hpp"
+#include "state/damping.hpp"
+#include "state/friction.hpp"
+#include "state/wall_geometry.hpp"
+#include "state/yielding.hpp"
+#include "timestep/outgrown.hpp"
+
+namespace eg {
+namespace {
+
+constexpr double direction_error = 1e-7;  // of a unit vector kept in single precision
+constexpr double most_slack = 2;          // by which an overlap may grow beyond what is foreseen, at most [-]
+constexpr double up_to = 0.8;             // of the bound: what contacts are given of the room of their grains
+constexpr double widest = 100;            // weight
+constexpr double nearest = 0.02;          // room of a grain below the bound, as the weights see it [of the bound]
+constexpr std::size_t lanes = Contacts::lanes;
+
+template <class S>
+S clamp(const S& x, double low, double high) {
+  return min(max(x, S(low)), S(high));
+}
+
+/// Half of what contacts are allowed on average [m].
+double usual_overlap(const StandingBound& bound) {
+  Batch total(0.0), count(0.0);
+  const Batch zero(0.0), one(1.0);
+  for (std::size_t c = 0; c < bound.overlap.size(); c += lanes) {
+    const Batch x = load_lanes(bound.overlap.data() + c);
+    const Mask counts = (x > zero) & (x < Batch(INFINITY));
+    total = total + select(counts, x, zero), count = count + select(counts, one, zero);
+  }
+  return sum(count) > 0 ? 0.5 * sum(total) / sum(count) : 0.0;
+}
+
+/// A contact as it is, and how it moves.
+template <class S>
+struct Met {
+  Geometry<S> g;
+  S radius_i, radii;  ///< R_i, R_i + R_j; wall: R twice
+  S inverse_mass;     ///< 1/m_i + 1/m_j
+  S distance;         ///< length of the branch
+  Approach<S> approach;
+};
+
+/// What is asked about all contacts alike.
+template <class Law>
+class Presser {
+ public:
+  Presser(const Scene& scene, const State& state, const PressOptions& options)
+      : state_(state),
+        bound_(state.policy.bound),
+        options_(options),
+        motion_(state),
+        arms_(arms_of(scene)),
+        kinds_(scene.materials.size()),
+        constants_(pair_constants<Law>(scene.materials, friction_in_force(scene, state), scene.dimension)),
+        damping_(damping_in_force(scene, state)),
+        yields_(glued_that_yield(state)),
+        usual_(usual_overlap(bound_)),
+        rows_(state.grains.size()) {
+    const bool warm = bound_.value > 0;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const Inertia inertia = inertia_of(state.grains, static_cast<Index>(i));
+      const double b = warm ? bound_.grain[i] : 0.0;
+      rows_[i] = {b, room_below(bound_.value, b), inertia.inverse_mass,
+                  inertia.inverse_mass + inertia.inverse_inertia * inertia.radius * inertia.radius};
+    }
+  }
+
+  /// Eight pairs.
+  void press(std::size_t c, StandingBound& bound, Pressed& out) const {
+    const Index *i = state_.contacts.i.data() + c, *j = state_.contacts.j.data() + c;
+    const auto m = met<Batch>(c);
+    const Columns<Batch> side_i = load_rows<Batch>(rows_.data(), i), side_j = load_rows<Batch>(rows_.data(), j);
+    const auto pair = this->pair<Batch>(c, m);
+    const Batch zero(0.0);
+    const Mask real = m.distance > Batch(1e-140);  // padding has no length
+    const Batch reach = select(real, allowed(pair, m, max(side_i.x, side_j.x)), zero);
+    const NormalResponse<Batch> at = response(pair, reach);
+    const Mask counts = reach > zero;
+    const Batch kn = select(counts, damped(at.stiffness, m.inverse_mass, damping_.normal_ratio), zero);
+    const Batch kt = select(counts, damped(at.tangential, m.inverse_mass, damping_.shear_ratio), zero);
+    store(c, m, reach, kn, kt, out);
+    const Batch before = max(load_lanes(bound.overlap.data() + c), Batch(0.0));
+    const Mask outran = real & (m.g.overlap > before);
+    for (std::size_t k = 0; k < lanes; ++k) out.outran[c + k] = lane(outran, k);
+    store_lanes(out.weight.data() + c, weights(c, side_i, side_j, kn, kt));
+    store_lanes(bound.overlap.data() + c, select(real, reach, Batch(INFINITY)));
+    set_directions(bound, c,
+                   {select(counts, m.g.n.x, zero), select(counts, m.g.n.y, zero), select(counts, m.g.n.z, zero)});
+    if (!HasCouples<Law> && yields_.empty()) return;
+    for (std::size_t k = 0; k < lanes; ++k) {
+      if (state_.contacts.is_padding(c + k)) continue;
+      if constexpr (HasCouples<Law>) {
+        add_couples(c + k, reach[k], out);
+        const Spring& s = out.network.springs[c + k];
+        set_direction(bound, c + k, acts(s) ? s.n : Vec3{});
+      } else {
+        give_way(c + k, out);
+      }
+    }
+  }
+
+  void press_wall(std::size_t w, StandingBound& bound, Pressed& out) const {
+    const auto m = met_wall(w);
+    const double reach = allowed(wall_pair(w), m, rows_[state_.wall_contacts[w].grain].x);
+    const Counted c = counted_wall(w, m, reach);
+    const std::size_t at = state_.contacts.size() + w;
+    Spring& s = out.network.springs[at];
+    s.arm_i = m.g.arm_i, s.normal = c.normal, s.tangential = c.tangential, s.n = m.g.n;
+    out.motion[at] = {c.reach, direction_error, m.approach.turning * options_.time};
+    set_couples(at, c, out);
+    out.outran[at] = m.g.overlap > std::max(bound.wall_overlap[w], 0.0);
+    bound.wall_overlap[w] = c.reach, bound.wall_direction[w] = acts(s) ? m.g.n : Vec3{};
+  }
+
+  /// Adds the contact if it may be beyond what it is allowed.
+  void look(std::size_t c, std::span<const double> turn, std::vector<Beyond>& found) const {
+    const Index i = state_.contacts.i[c], j = state_.contacts.j[c];
+    const auto m = met<double>(c);
+    const Vec3 from = counted_direction(bound_, c);
+    const auto pair = this->pair<double>(c, m);
+    const double may = bound_.overlap[c], reach = allowed(pair, m, std::max(rows_[i].x, rows_[j].x));
+    if (!is_beyond(m, from, may, foreseen(pair, m), std::min(turn[i], turn[j]))) return;
+    found.push_back({i, j, c, m.g.n, turned(m, from), m.approach.turning * options_.time, m.g.overlap > may,
+                     counted(c, m, std::max(may, reach)), norm(from) > 0 ? counted(c, m, may) : Counted{}});
+  }
+  void look_wall(std::size_t w, std::span<const double> turn, std::vector<Beyond>& found) const {
+    const Index i = state_.wall_contacts[w].grain;
+    const auto m = met_wall(w);
+    const Vec3 from = bound_.wall_direction[w];
+    const auto pair = wall_pair(w);
+    const double may = bound_.wall_overlap[w], reach = allowed(pair, m, rows_[i].x);
+    if (!is_beyond(m, from, may, foreseen(pair, m), turn[i])) return;
+    found.push_back({i, no_index, w, m.g.n, turned(m, from), m.approach.turning * options_.time, m.g.overlap > may,
+                     counted_wall(w, m, std::max(may, reach)), norm(from) > 0 ? counted_wall(w, m, may) : Counted{}});
+  }
+
+ private:
+  template <class S>
+  using Pair = typename Law::template Pair<S>;
+  template <class S>
+  using Constants = typename Law::template Constants<S>;
+
+  template <class S>
+  Met<S> met(std::size_t c) const {
+    const auto& list = state_.contacts;
+    BothSides<S> both;
+    load_sides<false, S>(both, state_.grains.position.data(), state_.grains.velocity.data(), nullptr, list.i.data() + c,
+                         list.j.data() + c, motion_.shift.data(), list.image.empty() ? nullptr : list.image.data() + c);
+    Met<S> m;
+    const Vec<S> branch = xyz(both.branch);
+    m.g = grain_grain(branch, both.radius_i, both.branch.w, arms_);
+    m.radius_i = both.radius_i, m.radii = both.branch.w, m.inverse_mass = both.velocity.w;
+    m.distance = m.radii - m.g.overlap;
+    m.approach = motion_.approach(m.g.n, branch, xyz(both.velocity), reciprocal(max(m.distance, S(1e-300))));
+    return m;
+  }
+
+  Met<double> met_wall(std::size_t w) const {
+    const auto& contact = state_.wall_contacts[w];
+    const Quad& p = state_.grains.position[contact.grain];
+    const auto g = grain_wall(state_, state_.walls[contact.wall], p.vec(), p.w, arms_);
+    return {g,
+            p.w,
+            2 * p.w,
+            state_.grains.velocity[contact.grain].w,
+            p.w - g.overlap,
+            motion_.at_wall(state_, contact, g.n)};
+  }
+
+  template <class S>
+  Pair<S> pair(std::size_t c, const Met<S>& m) const {
+    const Index *i = state_.contacts.i.data() + c, *j = state_.contacts.j.data() + c;
+    const auto& grains = state_.grains;
+    const auto sizes = grain_sizes(m.radius_i, m.radii - m.radius_i);
+    if (constants_.size() == 1)
+      return Law::template pair<S>(broadcast_struct<Constants<S>, S>(constants_.front()), sizes);
+    const auto kind = [&](std::size_t k) { return grains.material_of(i[k]) * kinds_ + grains.material_of(j[k]); };
+    return Law::template pair<S>(gather_struct<Constants<S>, S>(constants_.data(), kind), sizes);
+  }
+  Pair<double> wall_pair(std::size_t w) const {
+    const auto& contact = state_.wall_contacts[w];
+    const auto kind = state_.grains.material_of(contact.grain) * kinds_ + state_.walls[contact.wall].material;
+    return Law::template pair<double>(constants_[kind], wall_sizes(state_.grains.radius(contact.grain)));
+  }
+
+  template <class S>
+  NormalResponse<S> response(const Pair<S>& pair, const S& overlap) const {
+    auto n = Law::template normal<S>(pair, overlap);
+    if (state_.contacts.history_vectors == 0) n.tangential = S(0.0);
+    return n;
+  }
+  template <class S>
+  S damped(const S& stiffness, const S& inverse_mass, double ratio) const {
+    return damped_stiffness(stiffness, inverse_mass, ratio, damping_.local, bound_.step);
+  }
+
+  /// N²/(2 kn), the energy of a linear spring of that force and stiffness: no more than a contact stores that stiffens.
+  template <class S>
+  static S stored(const NormalResponse<S>& n) {
+    return select(n.force > S(0.0), S(0.5) * n.force * n.force * reciprocal(max(n.stiffness, S(1e-300))), S(0.0));
+  }
+
+  /// The overlap grown, but no further than to where the energy is taken up that approaches, and twice what is stored;
+  /// in any case as far as it is driven. A step is exact for the power laws of springs and Hertz contacts.
+  template <class S>
+  S foreseen(const Pair<S>& pair, const Met<S>& m) const {
+    const S growth = m.approach.speed * S(options_.time), grown = m.g.overlap + growth;
+    const S energy = select(m.inverse_mass > S(0.0),
+                            m.approach.speed * m.approach.speed * reciprocal(max(m.inverse_mass, S(1e-300))), S(0.0));
+    const S most = energy + S(2.0) * stored(Law::template normal<S>(pair, max(m.g.overlap, S(0.0))));
+    S reach = grown;
+    for (int step = 0; step < 4; ++step) {
+      const auto n = Law::template normal<S>(pair, max(reach, S(0.0)));
+      const S has = stored(n);
+      const auto over = (reach > S(0.0)) & (has > most * S(1.001));
+      if (!any(over)) break;
+      const S power_of = S(1.0) + n.stiffness * reach * reciprocal(max(n.force, S(1e-300)));  // U ~ δ^q
+      const S share = max(most, S(1e-30) * has) * reciprocal(max(has, S(1e-300)));
+      reach = select(over, reach * power(clamp(share, 1e-30, 1.0), reciprocal(max(power_of, S(1.0)))), reach);
+    }
+    return max(reach, m.g.overlap + min(m.approach.driven * S(options_.time), growth));
+  }
+
+  /// What a contact may grow to unnoticed; `most`: bound of the stiffer of its grains. 0: it touches nothing till then.
+  template <class S>
+  S allowed(const Pair<S>& pair, const Met<S>& m, const S& most) const {
+    const S overlap = max(m.g.overlap, S(0.0)), grown = m.g.overlap + m.approach.speed * S(options_.time);
+    S reach = foreseen(pair, m) + S(options_.slack) * overlap;
+    if (bound_.value > 0) {
+      const S stiffer = min(S(up_to * bound_.value) * reciprocal(max(most, S(1e-3 * bound_.value))), S(10.0));
+      const S roomy = clamp(stiffer * stiffer - S(1.0), options_.slack, most_slack);
+      reach = max(reach, max(overlap * (S(1.0) + roomy), clamp(S(2.0) * (stiffer - S(1.0)), 0, 1) * S(usual_)));
+    }
+    return select(grown > S(0.0), reach, S(0.0));
+  }
+
+  static double turned(const Met<double>& m, const Vec3& from) {
+    return norm(from) > 0 ? norm(m.g.n - from) + direction_error : 0.0;
+  }
+  /// Whether it may grow past what it is allowed, or turn further than `leave`.
+  bool is_beyond(const Met<double>& m, const Vec3& from, double may, double reach, double leave) const {
+    const double off = turned(m, from);
+    return reach > may * (1 + 1e-9) || (off > 0 && off + m.approach.turning * options_.time > leave);
+  }
+
+  Batch weights(std::size_t c, const Columns<Batch>& i, const Columns<Batch>& j, Batch kn, Batch kt) const {
+    if (!(bound_.value > 0)) return Batch(1.0);
+    const Batch tiny(1e-300), old = load_lanes(bound_.weight.data() + c);
+    const auto centred = [&](Batch a_i, Batch a_j) {
+      return clamp(sqrt(a_j * i.y / max(a_i * j.y, tiny)), 1 / widest, widest);
+    };
+    const Batch now = centred(max(kn * i.z, kt * i.w), max(kn * j.z, kt * j.w));
+    return select(old > Batch(0.0), sqrt(old * now), centred(i.z, j.z));
+  }
+
+  void store(std::size_t c, const Met<Batch>& m, Batch reach, Batch kn, Batch kt, Pressed& out) const {
+    const Batch turning = m.approach.turning * Batch(options_.time);
+    for (std::size_t k = 0; k < lanes; ++k) {
+      Spring& s = out.network.springs[c + k];
+      s.arm_i = m.g.arm_i[k], s.arm_j = m.g.arm_j[k], s.normal = kn[k], s.tangential = kt[k];
+      s.n = {m.g.n.x[k], m.g.n.y[k], m.g.n.z[k]};
+      out.motion[c + k] = {reach[k], direction_error, turning[k]};
+    }
+  }
+
+  void give_way(std::size_t c, Pressed& out) const {
+    if (yields_.empty() || !(yields_[state_.contacts.i[c]] | yields_[state_.contacts.j[c]])) return;
+    Spring& s = out.network.springs[c];
+    s.normal *= yielding, s.tangential *= yielding;
+  }
+
+  /// A contact of a law with couples, which may be bonded.
+  void add_couples(std::size_t c, double reach, Pressed& out) const {
+    const Counted k = counted(c, met<double>(c), reach);
+    out.network.springs[c].normal = k.normal, out.network.springs[c].tangential = k.tangential;
+    set_couples(c, k, out);
+  }
+  void set_couples(std::size_t at, const Counted& c, Pressed& out) const {
+    const Spring& s = out.network.springs[at];
+    if (out.couples == 0 || s.i == s.j) return;
+    const auto put = [&](std::size_t place) {
+      Spring& couple = out.network.springs[place];
+      couple.normal = c.twisting, couple.tangential = c.rolling, couple.n = s.n;
+      out.motion[place] = out.motion[at];
+    };
+    put(out.couples + at);
+    if (s.j != no_index) put(2 * out.couples + at);
+  }
+  template <class History>
+  Counted counted(const Pair<double>& pair, double reach, double inverse_mass, double give,
+                  const History& stored) const {
+    Counted c;
+    NormalResponse<double> n{};
+    double rolling = 0, twisting = 0;
+    if constexpr (HasCouples<Law>) {
+      ContactHistory<Law, double> history{};
+      if (state_.contacts.history_vectors > 0)
+        for (std::size_t h = 0; h < history.size(); ++h) history[h] = stored(h);
+      bool acts = reach > 0;
+      if constexpr (HasBonds<Law>) acts = acts || history[Law::bond_value] > 0;
+      if (acts) {
+        const Standing s = Law::at_rest(pair, reach, history);
+        n = s.normal, rolling = s.rolling, twisting = s.twisting;
+      }
+      if (state_.contacts.history_vectors == 0) n.tangential = rolling = twisting = 0;
+    } else if (reach > 0) {
+      n = response<double>(pair, reach);
+    }
+    c.normal = give * damped(n.stiffness, inverse_mass, damping_.normal_ratio);
+    c.tangential = give * damped(n.tangential, inverse_mass, damping_.shear_ratio);
+    c.rolling = 2 * give * damped(rolling, inverse_mass, 0), c.twisting = 2 * give * damped(twisting, inverse_mass, 0);
+    c.reach = std::max(reach, 0.0);
+    return c;
+  }
+  Counted counted(std::size_t c, const Met<double>& m, double reach) const {
+    const double give =
+        !yields_.empty() && (yields_[state_.contacts.i[c]] | yields_[state_.contacts.j[c]]) ? yielding : 1;
+    return counted(pair<double>(c, m), reach, m.inverse_mass, give,
+                   [&](std::size_t h) { return state_.contacts.history_at(c, h); });
+  }
+  Counted counted_wall(std::size_t w, const Met<double>& m, double reach) const {
+    const auto& contact = state_.wall_contacts[w];
+    return counted(wall_pair(w), reach, m.inverse_mass,
+                   state_.bodies[state_.walls[contact.wall].body].yields ? yielding : 1.0,
+                   [&](std::size_t h) { return contact.history[h]; });
+  }
+
+  const State& state_;
+  const StandingBound& bound_;
+  PressOptions options_;
+  CommonMotion motion_;
+  Arms arms_;
+  std::size_t kinds_;
+  std::vector<Constants<double>> constants_;
+  DampingSpec damping_;
+  std::vector<std::uint8_t> yields_;
+  double usual_;
+  std::vector<Quad> rows_;  ///< of grains: bound, room below sigma, what kn and kt are divided by
+};
+
+}  // namespace
+
+double centred_weight(double a_i, double room_i, double a_j, double room_j) {
+  const double t = std::sqrt((a_j * room_i) / (a_i * room_j));
+  return std::isfinite(t) ? std::clamp(t, 1 / widest, widest) : 1.0;
+}
+
+double room_below(double sigma, double bound) { return std::max(nearest * sigma, sigma - bound); }
+
+void lay_out(const Scene& scene, const State& state, Pressed& out) {
+  const auto& list = state.contacts;
+  out.network = bare_network(scene, state);
+  auto& springs = out.network.springs;
+  bool couples = false;
+  with_law(scene.contact.law,
+           [&]<class Law>(Law) { couples = HasCouples<Law> && state.grains.rotates() && list.history_vectors > 0; });
+  const std::size_t contacts = list.size() + state.wall_contacts.size();
+  springs.reserve(couples ? 3 * contacts : contacts);
+  const auto add = [&](Index i, Index j, bool couple) {
+    Spring s;
+    s.i = i, s.j = j, s.couple = couple;
+    springs.push_back(s);
+  };
+  for (std::size_t c = 0; c < list.size(); ++c) add(list.i[c], list.j[c], false);
+  for (const auto& w : state.wall_contacts) add(w.grain, no_index, false);
+  if (couples) {
+    for (std::size_t c = 0; c < contacts; ++c) add(springs[c].i, no_index, true);
+    for (std::size_t c = 0; c < list.size(); ++c) add(list.j[c], no_index, true);
+  }
+  out.couples = couples ? contacts : 0;
+  out.weight.assign(springs.size(), 1.0);
+  out.motion.assign(springs.size(), {});
+  out.outran.assign(springs.size(), 0);
+}
+
+void press_contacts(const Scene& scene, State& state, const PressOptions& options, Pressed& out) {
+  StandingBound& bound = state.policy.bound;
+  const auto& list = state.contacts;
+  const auto& g = state.grains;
+  for (std::size_t i = 0; i < g.size(); ++i)
+    out.network.inverse_mass[i] = g.velocity[i].w, out.network.radius[i] = g.radius(i);
+  if (g.rotates())
+    for (std::size_t i = 0; i < g.size(); ++i) out.network.inverse_inertia[i] = g.spin[i].w;
+  const bool warm = bound.value > 0;
+  if (!warm) bound.overlap.assign(list.size(), 0.0), bound.weight.assign(list.size(), 0.0);
+  bound.direction.resize(3 * list.size());
+  bound.wall_overlap.resize(state.wall_contacts.size()), bound.wall_direction.resize(state.wall_contacts.size());
+  with_law(scene.contact.law, [&]<class Law>(Law) {
+    const Presser<Law> presser(scene, state, options);
+    const std::size_t chunks = list.chunk_begin.empty() ? 0 : list.chunk_begin.size() - 1;
+#pragma omp parallel for schedule(static) if (chunks >= Contacts::worth_threads)
+    for (std::size_t k = 0; k < chunks; ++k)
+      for (std::size_t c = list.chunk_begin[k]; c < list.chunk_begin[k + 1]; c += lanes) presser.press(c, bound, out);
+    for (std::size_t w = 0; w < state.wall_contacts.size(); ++w) presser.press_wall(w, bound, out);
+  });
+}
+
+std::vector<Beyond> look_beyond(const Scene& scene, const State& state, const ContactSelection& selection,
+                                std::span<const double> turn, const PressOptions& options) {
+  std::vector<Beyond> found;
+  with_law(scene.contact.law, [&]<class Law>(Law) {
+    const Presser<Law> presser(scene, state, options);
+    for (const std::size_t c : selection.grains) presser.look(c, turn, found);
+    for (const std::size_t w : selection.walls) presser.look_wall(w, turn, found);
+  });
+  return found;
+}
+
+}  // namespace eg
