@@ -35,7 +35,7 @@ struct HertzExponent {
 
   template <class S>
   EG_INLINE static Pair<S> pair(const Constants<S>& c, const Sizes<S>& sizes) {
-    return {S(4.0 / 3.0) * c.e_star * root(sizes.r_star()), c.ratio, c.exponent, c.friction};
+    return {S(4.0 / 3.0) * c.e_star * root_of_ratio(sizes.product, sizes.length), c.ratio, c.exponent, c.friction};
   }
 
   template <class S>

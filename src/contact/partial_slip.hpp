@@ -71,12 +71,19 @@ struct PartialSlip {
   EG_INLINE static S cubed_share(const Curve<S>& c, const S& distance, const S& inverse_scale) {
     return min(max(S(1.0) - (distance + c.stuck) * inverse_scale, S(1e-9)), S(1.0));
   }
+  /// The same with 1/θ = mµN/∛(left (mµN)²), left = θ³ mµN: the cube root need not wait for 1/(mµN).
+  template <class S>
+  EG_INLINE static Share<S> share_at(const Curve<S>& c, const S& distance, const S& limit, const S& inverse_limit) {
+    const S scale = limit + limit * c.reversed;
+    const S left = min(max(scale - (distance + c.stuck), S(1e-9) * scale), scale);
+    return {left * inverse_scale(c, inverse_limit), scale * inverse_cube_root(left * (scale * scale))};
+  }
   /// θ for another θ³, from one close by where it is: by the series of (1 + q)^(−1/3), exact to round-off for |q| ≤
   /// 1e-3.
   template <class S>
   EG_INLINE static Share<S> moved_to(const S& cube, const Share<S>& from) {
     const S q = (cube - from.cube) * (from.inverse * from.inverse * from.inverse);
-    const S series = S(1.0) - q * (S(1.0 / 3) - q * (S(2.0 / 9) - q * (S(14.0 / 81) - q * S(35.0 / 243))));
+    const S series = (S(1.0) - q * S(1.0 / 3)) + (q * q) * ((S(2.0 / 9) - q * S(14.0 / 81)) + (q * q) * S(35.0 / 243));
     S inverse = select(cube < S(1.0), from.inverse * series, S(1.0));
     const auto far = (max(q, -q) > S(1e-3)) & (cube < S(1.0));
     if (any(far)) inverse = select(far, inverse_cube_root(cube), inverse);
@@ -92,17 +99,17 @@ struct PartialSlip {
 
   /// Effect of N + ΔN, grow = µΔN, on curve and force; gives θ and T − R after it.
   template <class S>
-  EG_INLINE static Share<S> press(Curve<S>& c, Vec<S>& shear, Way<S>& away, const S& grow, const S& inverse_limit) {
+  EG_INLINE static Share<S> press(Curve<S>& c, Vec<S>& shear, Way<S>& away, const S& grow, const S& limit,
+                                  const S& inverse_limit) {
     const Vec<S> from = shear - c.origin;
     const S square = dot(from, from), inverse = inverse_length(square), distance = square * inverse;
-    const S outward = grow * c.reversed, scale = inverse_scale(c, inverse_limit);
+    const S outward = grow * c.reversed;
     away.unit = from * inverse;
     c.origin -= away.unit * outward;
     c.reach = select(c.reach > S(0.0), c.reach + grow * (S(1.0) + c.reversed), S(0.0));
     const S stuck = c.stuck + grow, lost = max(-stuck, S(0.0));
     c.stuck = max(stuck, S(0.0));
-    Share<S> share;
-    share.cube = cubed_share(c, distance + outward - lost, scale), share.inverse = inverse_cube_root(share.cube);
+    const Share<S> share = share_at(c, distance + outward - lost, limit, inverse_limit);
     const S drop = min((S(1.0) - share.value()) * lost, distance);
     shear -= away.unit * drop;
     away.length = select(square > S(1e-60), distance + outward - drop, S(0.0));
@@ -128,14 +135,15 @@ struct PartialSlip {
     const auto apart = distance > S(1e-12) * limit;
     const S outward = select(apart, max(along, S(0.0)), step) * (S(1.0) - share);
     const S mean = mean_share(now, S(2.0 / 3.0) * k0 * outward * scale);
-    return shear + slip * (k0 * (share + (S(1.0) - share) * mean));
+    return shear + slip * (k0 * share + (k0 - k0 * share) * mean);
   }
 
   /// Mean of θ over a slip by which θ² falls by `fall`: (2/3)(θ² + θθ' + θ'²)/(θ + θ'), or its series in fall/θ².
   template <class S>
   EG_INLINE static S mean_share(const Share<S>& from, const S& fall) {
     const S theta = from.value(), p = fall * (from.inverse * from.inverse);
-    const S mean = theta * (S(1.0) - p * (S(1.0 / 4) + p * (S(1.0 / 24) + p * (S(1.0 / 64) + p * S(1.0 / 128)))));
+    const S series = (S(1.0 / 4) + p * S(1.0 / 24)) + (p * p) * (S(1.0 / 64) + p * S(1.0 / 128));
+    const S mean = theta - (theta * p) * series;
     const auto far = p > S(1e-3);
     if (!any(far)) return mean;
     const S next = root(max(theta * theta - fall, S(1e-30)));
@@ -147,13 +155,12 @@ struct PartialSlip {
   EG_INLINE static void close(Curve<S>& c, const Vec<S>& shear, const Vec<S>& trial, const S& limit) {
     const S zero(0.0);
     const Vec<S> away = shear - c.origin;
-    const S left = c.reach - c.stuck;
-    const auto ended = (left < zero) | (dot(away, away) > left * left) | (dot(trial, trial) > limit * limit);
+    const S left = c.reach - c.stuck, whole = dot(away, away);
+    const auto ended = (left < zero) | (whole > left * left) | (dot(trial, trial) > limit * limit);
     c.origin = select(ended, Vec<S>{zero, zero, zero}, c.origin);
     c.reach = select(ended, zero, c.reach), c.reversed = select(ended, zero, c.reversed);
 
-    const Vec<S> now = shear - c.origin;
-    const S square = dot(now, now);
+    const S square = select(ended, dot(shear, shear), whole);
     const auto anew = (c.stuck * c.stuck > square) & (c.stuck > select(c.reversed > zero, S(0.05) * limit, zero));
     if (!any(anew)) return;
     c.reach = select(anew, max(c.stuck, c.reach - root(max(square, S(1e-60)))), c.reach);
@@ -166,10 +173,10 @@ struct PartialSlip {
     const auto n = normal<S>(p, strain.overlap);
     const Vec<S> before = history_vector(h, 0);
     Curve<S> curve{history_vector(h, 1), h[7], h[8], h[9]};
-    const S limit = p.friction * n.force, inverse_limit = reciprocal(max(limit, S(1e-200)));
+    const S limit = max(p.friction * n.force, S(1e-90)), inverse_limit = reciprocal(limit);
     Vec<S> shear = before;
     Way<S> away;
-    const auto pressed = press(curve, shear, away, p.friction * (n.force - h[6]), inverse_limit);
+    const auto pressed = press(curve, shear, away, p.friction * (n.force - h[6]), limit, inverse_limit);
     const Vec<S> trial = slide(curve, shear, away, pressed, strain.slip, n.tangential, limit, inverse_limit);
     shear = coulomb(trial, limit);
     close(curve, shear, trial, limit);

@@ -1,7 +1,7 @@
 #pragma once
 // Hertz–Mindlin contacts of rough spheres in three stages (Otsubo, O'Sullivan, Hanley and Sim 2017): asperities alone,
 // then asperities and bulk, then the bulk with the asperities pressed flat.
-#include <numbers>
+#include <cmath>
 
 #include "base/power.hpp"
 #include "contact/hertz_mindlin.hpp"
@@ -34,30 +34,31 @@ struct RoughHertzMindlin {
   template <class S>
   struct Constants {
     S e_star, ratio, s, friction;  ///< E* [Pa], kt/kn, s [m], µ
+    S inverse_s, asperities;       ///< 1/s, √2 s^1.5 [m^1.5]
   };
   template <class S>
   struct Pair {
     S hertz;       ///< (4/3) E* √R* [N/m^1.5]
     S asperities;  ///< N_T1 [N]
-    S ratio, s, friction;
+    S ratio, s, friction, inverse_s;
   };
 
   static Constants<double> constants(const Material& a, const Material& b, int dimension) {
     const auto smooth = HertzMindlin::constants(a, b, dimension);
-    const double s = std::hypot(a.roughness, b.roughness);
-    return {smooth.e_star, 4 * smooth.g_star / smooth.e_star, std::max(s, 1e-20), smooth.friction};
+    const double s = std::max(std::hypot(a.roughness, b.roughness), 1e-20);
+    return {smooth.e_star, 4 * smooth.g_star / smooth.e_star, s, smooth.friction, 1 / s, std::sqrt(2 * s) * s};
   }
 
   template <class S>
   EG_INLINE static Pair<S> pair(const Constants<S>& c, const Sizes<S>& sizes) {
-    const S stiff = c.e_star * root(sizes.r_star());
-    return {S(4.0 / 3.0) * stiff, S(std::numbers::sqrt2) * stiff * c.s * root(c.s), c.ratio, c.s, c.friction};
+    const S stiff = c.e_star * root_of_ratio(sizes.product, sizes.length);
+    return {S(4.0 / 3.0) * stiff, stiff * c.asperities, c.ratio, c.s, c.friction, c.inverse_s};
   }
 
-  /// N = scale · x^exponent with x = (δ − shift)/length of the stage that δ lies in.
+  /// N = scale · x^exponent with x = (δ − shift) · per_length of the stage that δ lies in.
   template <class S>
   struct Stage {
-    S scale, exponent, shift, length;
+    S scale, exponent, shift, per_length;
   };
   template <class S>
   EG_INLINE static Stage<S> stage(const Pair<S>& p, const S& overlap) {
@@ -67,14 +68,14 @@ struct RoughHertzMindlin {
       return select(beyond2, bulk, select(beyond1, both, asperities));
     };
     return {pick(p.asperities, S(rough::ratio) * p.asperities, p.hertz), pick(S(c), S(b), S(1.5)),
-            pick(S(0.0), S(first) * p.s, S(first + second) * p.s), pick(S(end1) * p.s, S(end2 - first) * p.s, S(1.0))};
+            pick(S(0.0), S(first) * p.s, S(first + second) * p.s), pick(S(1 / end1) * p.inverse_s, S(1 / (end2 - first)) * p.inverse_s, S(1.0))};
   }
 
   template <class S>
   EG_INLINE static NormalResponse<S> normal(const Pair<S>& p, const S& overlap) {
     const Stage<S> at = stage(p, overlap);
-    const S beyond = max(overlap - at.shift, S(1e-30)), inverse = reciprocal(at.length);
-    const S slope = at.scale * power(beyond * inverse, at.exponent - S(1.0)) * inverse;  // N/(δ − shift)
+    const S beyond = max(overlap - at.shift, S(1e-30));
+    const S slope = at.scale * at.per_length * power(beyond * at.per_length, at.exponent - S(1.0));  // N/(δ − shift)
     const S touching = select(overlap > S(0.0), slope, S(0.0));
     const S kn = at.exponent * touching;
     return {touching * beyond, kn, p.ratio * kn};

@@ -414,6 +414,7 @@ TEST(Batch, FastRootsAreAccurate) {
     const double a = std::exp(random.uniform(-60, 60));
     EXPECT_NEAR(rsqrt(Batch(a))[3] * std::sqrt(a), 1, 5e-16);
     EXPECT_NEAR(reciprocal(Batch(a))[3] * a, 1, 5e-16);
+    EXPECT_NEAR(quotient(Batch(3.0), Batch(a))[3] * a, 3, 15e-16);
     EXPECT_NEAR(root(Batch(a))[3] / std::sqrt(a), 1, 7e-16);
   }
   EXPECT_EQ(root(Batch(0.0))[0], 0.0);
@@ -423,8 +424,8 @@ TEST(Batch, PowersAreAccurate) {
   Random random(11);
   for (int trial = 0; trial < 2000; ++trial) {
     const double a = std::exp(random.uniform(-60, 60)), p = random.uniform(-3, 3);
-    EXPECT_NEAR(logarithm(Batch(a))[2], std::log(a), 4e-16 * std::max(1.0, std::abs(std::log(a))));
-    EXPECT_NEAR(exponential(Batch(p))[1] / std::exp(p), 1, 6e-16);
+    EXPECT_NEAR(binary_logarithm(Batch(a))[2], std::log2(a), 4e-16 * std::max(1.0, std::abs(std::log2(a))));
+    EXPECT_NEAR(binary_power(Batch(p), Batch(1.0))[1] / std::exp2(p), 1, 6e-16);
     EXPECT_NEAR(power(Batch(a), Batch(p))[6] / std::pow(a, p), 1, 4e-16 * (2 + std::abs(p * std::log(a))));
   }
   EXPECT_EQ(power(Batch(1.0), Batch(0.3))[0], 1.0);
