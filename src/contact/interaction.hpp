@@ -82,9 +82,9 @@ EG_INLINE Increment<S> increment(const Geometry<S>& g, const Motion<S>& m) {
 template <class S>
 EG_INLINE Vec<S> turn(const Vec<S>& old, const Vec<S>& n, const S& twist) {
   const S out = dot(old, n), before = dot(old, old);
-  const S tilt = out * out * rough_reciprocal(max(before, S(1e-300))), square = twist * twist;
+  const S square = twist * twist, wider = rough_reciprocal(max(before, S(1e-300))) * (S(1.0) + square);
   const Vec<S> turned = old - n * out + cross(n, old) * twist;  // |turned|² = (before − out²)(1 + twist²)
-  return turned * rsqrt_near_one(tilt - square + tilt * square);
+  return turned * rsqrt_near_one(out * out * wider - square);
 }
 
 /// Contact dashpots: ratio ξ of critical damping of the pair, 2ξ√(m* k); zero is off.

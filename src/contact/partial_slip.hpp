@@ -54,40 +54,23 @@ struct PartialSlip {
   EG_INLINE static S inverse_length(const S& square) {
     return rsqrt(max(square, S(1e-60)));
   }
-  /// 1/(mµN)
-  template <class S>
-  EG_INLINE static S inverse_scale(const Curve<S>& c, const S& inverse_limit) {
-    return inverse_limit * (S(1.0) - S(0.5) * c.reversed);
-  }
 
-  /// θ³, and 1/θ: one cube root serves a contact for the whole step, unless it turns.
+  /// θ = ∛(left/scale), without a division: θ = left · square, with square = 1/(scale θ²) = scale/∛(left · scale²)².
   template <class S>
   struct Share {
-    S cube, inverse;
-    EG_INLINE S value() const { return cube * inverse * inverse; }
+    S left;       ///< mµN − |T − R| − E, no less than 1e-9 mµN [N]
+    S square;     ///< [1/N]
+    S changed{};  ///< fraction by which `left` changed since the cube root from which `square` was continued
+    EG_INLINE S value() const { return left * square; }
   };
-  /// θ³ at a distance |T − R| from the origin of the curve.
+  /// mµN
   template <class S>
-  EG_INLINE static S cubed_share(const Curve<S>& c, const S& distance, const S& inverse_scale) {
-    return min(max(S(1.0) - (distance + c.stuck) * inverse_scale, S(1e-9)), S(1.0));
+  EG_INLINE static S scale(const Curve<S>& c, const S& limit) {
+    return limit + limit * c.reversed;
   }
-  /// The same with 1/θ = mµN/∛(left (mµN)²), left = θ³ mµN: the cube root need not wait for 1/(mµN).
   template <class S>
-  EG_INLINE static Share<S> share_at(const Curve<S>& c, const S& distance, const S& limit, const S& inverse_limit) {
-    const S scale = limit + limit * c.reversed;
-    const S left = min(max(scale - (distance + c.stuck), S(1e-9) * scale), scale);
-    return {left * inverse_scale(c, inverse_limit), scale * inverse_cube_root(left * (scale * scale))};
-  }
-  /// θ for another θ³, from one close by where it is: by the series of (1 + q)^(−1/3), exact to round-off for |q| ≤
-  /// 1e-3.
-  template <class S>
-  EG_INLINE static Share<S> moved_to(const S& cube, const Share<S>& from) {
-    const S q = (cube - from.cube) * (from.inverse * from.inverse * from.inverse);
-    const S series = (S(1.0) - q * S(1.0 / 3)) + (q * q) * ((S(2.0 / 9) - q * S(14.0 / 81)) + (q * q) * S(35.0 / 243));
-    S inverse = select(cube < S(1.0), from.inverse * series, S(1.0));
-    const auto far = (max(q, -q) > S(1e-3)) & (cube < S(1.0));
-    if (any(far)) inverse = select(far, inverse_cube_root(cube), inverse);
-    return {cube, inverse};
+  EG_INLINE static S within(const S& left, const S& scale) {
+    return min(max(left, S(1e-9) * scale), scale);
   }
 
   /// T − R as a direction and a length, which may be < 0.
@@ -97,56 +80,68 @@ struct PartialSlip {
     S length;
   };
 
-  /// Effect of N + ΔN, grow = µΔN, on curve and force; gives θ and T − R after it.
+  /// Effect of N + ΔN, grow = µΔN, on curve and force; gives θ and T − R after it. One cube root serves a contact for
+  /// the whole step, unless it turns: what N takes of T while it falls changes θ little, so by the series of
+  /// (1 + q)^(−2/3), exact to round-off for |q| ≤ 1e-3.
   template <class S>
-  EG_INLINE static Share<S> press(Curve<S>& c, Vec<S>& shear, Way<S>& away, const S& grow, const S& limit,
-                                  const S& inverse_limit) {
+  EG_INLINE static Share<S> press(Curve<S>& c, Vec<S>& shear, Way<S>& away, const S& grow, const S& limit) {
     const Vec<S> from = shear - c.origin;
-    const S square = dot(from, from), inverse = inverse_length(square), distance = square * inverse;
-    const S outward = grow * c.reversed;
+    const S length2 = dot(from, from), inverse = inverse_length(length2), distance = length2 * inverse;
+    const S outward = grow * c.reversed, moved = select(length2 > S(1e-60), outward, S(0.0)), whole = scale(c, limit);
     away.unit = from * inverse;
     c.origin -= away.unit * outward;
-    c.reach = select(c.reach > S(0.0), c.reach + grow * (S(1.0) + c.reversed), S(0.0));
+    c.reach = select(c.reach > S(0.0), c.reach + (grow + outward), S(0.0));
     const S stuck = c.stuck + grow, lost = max(-stuck, S(0.0));
     c.stuck = max(stuck, S(0.0));
-    const Share<S> share = share_at(c, distance + outward - lost, limit, inverse_limit);
-    const S drop = min((S(1.0) - share.value()) * lost, distance);
+
+    const S free = whole - (distance + moved), left = within(free - stuck, whole);
+    const S root = inverse_cube_root(left * (whole * whole)), steep = whole * root, square = root * steep;
+    const S drop = min(lost - lost * (left * square), distance), after = within(free - c.stuck + drop, whole);
     shear -= away.unit * drop;
-    away.length = select(square > S(1e-60), distance + outward - drop, S(0.0));
-    return share;
+    away.length = distance + moved - drop;
+    const S q = (after - left) * (square * steep);
+    const S series = (S(1.0) - q * S(2.0 / 3)) + (q * q) * ((S(5.0 / 9) - q * S(40.0 / 81)) + (q * q) * S(110.0 / 243));
+    return {after, square * series, q};
   }
 
-  /// T after the slip Δs, before Coulomb's limit. `pressed`, `away`: as press() left them.
+  /// T after the slip Δs, before Coulomb's limit. `share`, `away`: as press() left them.
   template <class S>
-  EG_INLINE static Vec<S> slide(Curve<S>& c, const Vec<S>& shear, const Way<S>& away, const Share<S>& pressed,
-                                const Vec<S>& slip, const S& k0, const S& limit, const S& inverse_limit) {
-    const S towards = dot(away.unit, slip), along = select(away.length < S(0.0), -towards, towards);
-    const S whole = max(away.length, -away.length);
+  EG_INLINE static Vec<S> slide(Curve<S>& c, const Vec<S>& shear, const Way<S>& away, Share<S> share,
+                                const Vec<S>& slip, const S& k0, const S& limit) {
+    const auto behind = away.length < S(0.0);
+    const S towards = dot(away.unit, slip), along = select(behind, -towards, towards);
+    const S from = max(away.length, -away.length);
     const auto turns = along < S(0.0);
-    c.reach = select(turns, whole * (S(2.0) - c.reversed), c.reach);
+    c.reach = select(turns, from * (S(2.0) - c.reversed), c.reach);
     c.origin = select(turns, shear, c.origin);
     c.reversed = select(turns, S(1.0), c.reversed);
 
-    const S distance = select(turns, S(0.0), whole), scale = inverse_scale(c, inverse_limit);
-    const Share<S> now = moved_to(cubed_share(c, distance, scale), pressed);
-    const S step = root(max(dot(slip, slip), S(1e-60))), elastic = k0 * step;
-    const S share = select(elastic > c.stuck, c.stuck * reciprocal(max(elastic, S(1e-200))), S(1.0));
-    c.stuck = max(c.stuck - elastic, S(0.0));
+    const S distance = select(turns, S(0.0), from);
+    const auto elsewhere = turns | behind | (max(share.changed, -share.changed) > S(1e-3));
+    if (any(elsewhere)) {
+      const S whole = scale(c, limit), left = within(whole - (distance + c.stuck), whole);
+      const S root = inverse_cube_root(left * (whole * whole));
+      share.left = select(elsewhere, left, share.left);
+      share.square = select(elsewhere, root * (root * whole), share.square);
+    }
+    const S length2 = dot(slip, slip), inverse = inverse_length(length2), step = length2 * inverse;
+    const S sticking = min(k0 * step, c.stuck), k1 = sticking * inverse, k2 = k0 - k1;  // Δs takes T by k1 + k2 θ
+    c.stuck = c.stuck - sticking;
     const auto apart = distance > S(1e-12) * limit;
-    const S outward = select(apart, max(along, S(0.0)), step) * (S(1.0) - share);
-    const S mean = mean_share(now, S(2.0 / 3.0) * k0 * outward * scale);
-    return shear + slip * (k0 * share + (k0 - k0 * share) * mean);
+    const S outward = select(apart, max(along, S(0.0)), step);
+    return shear + slip * (k1 + k2 * mean_share(share, S(2.0 / 3.0) * k2 * outward));
   }
 
-  /// Mean of θ over a slip by which θ² falls by `fall`: (2/3)(θ² + θθ' + θ'²)/(θ + θ'), or its series in fall/θ².
+  /// Mean of θ over a slip by which θ² falls by `fall`/scale: (2/3)(θ² + θθ' + θ'²)/(θ + θ'), or its series in the
+  /// fraction by which θ² falls.
   template <class S>
   EG_INLINE static S mean_share(const Share<S>& from, const S& fall) {
-    const S theta = from.value(), p = fall * (from.inverse * from.inverse);
+    const S theta = from.value(), p = fall * from.square;
     const S series = (S(1.0 / 4) + p * S(1.0 / 24)) + (p * p) * (S(1.0 / 64) + p * S(1.0 / 128));
-    const S mean = theta - (theta * p) * series;
+    const S mean = theta - theta * p * series;
     const auto far = p > S(1e-3);
     if (!any(far)) return mean;
-    const S next = root(max(theta * theta - fall, S(1e-30)));
+    const S next = theta * root(max(S(1.0) - p, S(1e-30)));
     return select(far, S(2.0 / 3.0) * (theta * theta + theta * next + next * next) * reciprocal(theta + next), mean);
   }
 
@@ -155,13 +150,13 @@ struct PartialSlip {
   EG_INLINE static void close(Curve<S>& c, const Vec<S>& shear, const Vec<S>& trial, const S& limit) {
     const S zero(0.0);
     const Vec<S> away = shear - c.origin;
-    const S left = c.reach - c.stuck, whole = dot(away, away);
-    const auto ended = (left < zero) | (whole > left * left) | (dot(trial, trial) > limit * limit);
+    const S left = c.reach - c.stuck, whole = dot(away, away), tried = dot(trial, trial), most = limit * limit;
+    const auto ended = (left < zero) | (whole > left * left) | (tried > most);
     c.origin = select(ended, Vec<S>{zero, zero, zero}, c.origin);
     c.reach = select(ended, zero, c.reach), c.reversed = select(ended, zero, c.reversed);
 
-    const S square = select(ended, dot(shear, shear), whole);
-    const auto anew = (c.stuck * c.stuck > square) & (c.stuck > select(c.reversed > zero, S(0.05) * limit, zero));
+    const S square = select(ended, min(tried, most), whole);
+    const auto anew = (c.stuck * c.stuck > square) & (c.stuck > S(0.05) * limit * c.reversed);
     if (!any(anew)) return;
     c.reach = select(anew, max(c.stuck, c.reach - root(max(square, S(1e-60)))), c.reach);
     c.origin = select(anew, shear, c.origin);
@@ -173,11 +168,11 @@ struct PartialSlip {
     const auto n = normal<S>(p, strain.overlap);
     const Vec<S> before = history_vector(h, 0);
     Curve<S> curve{history_vector(h, 1), h[7], h[8], h[9]};
-    const S limit = max(p.friction * n.force, S(1e-90)), inverse_limit = reciprocal(limit);
+    const S limit = max(p.friction * n.force, S(1e-90));
     Vec<S> shear = before;
     Way<S> away;
-    const auto pressed = press(curve, shear, away, p.friction * (n.force - h[6]), limit, inverse_limit);
-    const Vec<S> trial = slide(curve, shear, away, pressed, strain.slip, n.tangential, limit, inverse_limit);
+    const auto share = press(curve, shear, away, p.friction * (n.force - h[6]), limit);
+    const Vec<S> trial = slide(curve, shear, away, share, strain.slip, n.tangential, limit);
     shear = coulomb(trial, limit);
     close(curve, shear, trial, limit);
     set_history_vector(h, 0, shear), set_history_vector(h, 1, curve.origin);
