@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/aligned.hpp"
 #include "base/vec.hpp"
 #include "state/cell.hpp"
 #include "state/list.hpp"
@@ -36,7 +37,7 @@ struct Contacts {
   static constexpr std::size_t worth_threads = 4;  ///< chunks from which starting threads pays
   std::vector<Index> i, j;
   std::vector<std::uint8_t> image;  ///< code of Cell::shift; empty when no direction is periodic
-  std::vector<double> history;      ///< blocks [value][lane] of eight contacts; vectors first (shear force on i [N])
+  AlignedVector<double> history;    ///< blocks [value][lane] of eight contacts; vectors first (shear force on i [N])
   std::vector<double> friction;     ///< factor on µ, one a contact; empty where µ does not vary
   std::vector<std::uint64_t>
       chunk_begin;                  ///< contacts of chunk k: [chunk_begin[k], chunk_begin[k+1]), multiples of `lanes`
