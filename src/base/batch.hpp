@@ -91,13 +91,13 @@ EG_INLINE Batch sqrt(Batch a) {
 #endif
 }
 /// 1/√a and 1/a to about an ulp: on AVX-512 a 14-bit guess y and the series in what is left, e = 1 − a y² or 1 − a y,
-/// up to e⁴; several times faster than √ and ÷.
+/// up to e³, as 0.27 e⁴ < 6e-17; several times faster than √ and ÷.
 /// a must be a normal number > 0.
 EG_INLINE Batch rsqrt(Batch a) {
 #if defined(__AVX512F__)
   const Double8 y = _mm512_maskz_rsqrt14_pd(0xff, a.v);
   const Double8 e = 1.0 - (a.v * y) * y;
-  return y + (y * e) * ((0.5 + 0.375 * e) + (e * e) * (0.3125 + 0.2734375 * e));
+  return y + (y * e) * (0.5 + e * (0.375 + 0.3125 * e));
 #else
   return Batch(1.0) / sqrt(a);
 #endif
@@ -106,7 +106,7 @@ EG_INLINE Batch reciprocal(Batch a) {
 #if defined(__AVX512F__)
   const Double8 y = _mm512_maskz_rcp14_pd(0xff, a.v);
   const Double8 e = 1.0 - a.v * y;
-  return y + (y * e) * ((1.0 + e) * (1.0 + e * e));
+  return (y + y * e) + (y + y * e) * (e * e);
 #else
   return Batch(1.0) / a;
 #endif

@@ -20,7 +20,7 @@ EG_INLINE Batch binary_logarithm(Batch a) {
   const Batch f = quotient(m - Batch(1.0), m + Batch(1.0)), g = f * f, g2 = g * g, g4 = g2 * g2;  // g ≤ 0.0295
   const Batch low = line(two / 3, two / 5, g) + g2 * line(two / 7, two / 9, g);
   const Batch middle = line(two / 11, two / 13, g) + g2 * line(two / 15, two / 17, g);
-  const Batch series = low + g4 * (middle + g4 * line(two / 19, two / 21, g));
+  const Batch series = low + g4 * (middle + g4 * Batch(two / 19));
   return e + f * (Batch(two) + g * series);
 }
 

@@ -81,9 +81,10 @@ EG_INLINE Increment<S> increment(const Geometry<S>& g, const Motion<S>& m) {
 /// Turns a stored vector of the contact plane into the new plane, with the common spin about n, keeping its length.
 template <class S>
 EG_INLINE Vec<S> turn(const Vec<S>& old, const Vec<S>& n, const S& twist) {
+  const Vec<S> spin = n * twist;
   const S out = dot(old, n), before = dot(old, old);
   const S square = twist * twist, wider = rough_reciprocal(max(before, S(1e-300))) * (S(1.0) + square);
-  const Vec<S> turned = old - n * out + cross(n, old) * twist;  // |turned|² = (before − out²)(1 + twist²)
+  const Vec<S> turned = old - n * out + cross(spin, old);  // |turned|² = (before − out²)(1 + twist²)
   return turned * rsqrt_near_one(out * out * wider - square);
 }
 

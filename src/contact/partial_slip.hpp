@@ -49,10 +49,10 @@ struct PartialSlip {
     S reversed;     ///< 1 after a reversal, else 0
   };
 
-  /// 1/|v|, and |v| = that times |v|²; a vector of no length has a tiny one.
+  /// |v|² and a little, so that it has a root.
   template <class S>
-  EG_INLINE static S inverse_length(const S& square) {
-    return rsqrt(max(square, S(1e-60)));
+  EG_INLINE static S square_of(const Vec<S>& v) {
+    return S(1e-60) + v.x * v.x + v.y * v.y + v.z * v.z;
   }
 
   /// θ = ∛(left/scale), without a division: θ = left · square, with square = 1/(scale θ²) = scale/∛(left · scale²)².
@@ -86,8 +86,8 @@ struct PartialSlip {
   template <class S>
   EG_INLINE static Share<S> press(Curve<S>& c, Vec<S>& shear, Way<S>& away, const S& grow, const S& limit) {
     const Vec<S> from = shear - c.origin;
-    const S length2 = dot(from, from), inverse = inverse_length(length2), distance = length2 * inverse;
-    const S outward = grow * c.reversed, moved = select(length2 > S(1e-60), outward, S(0.0)), whole = scale(c, limit);
+    const S length2 = square_of(from), inverse = rsqrt(length2), distance = length2 * inverse;
+    const S outward = grow * c.reversed, moved = select(length2 > S(2e-60), outward, S(0.0)), whole = scale(c, limit);
     away.unit = from * inverse;
     c.origin -= away.unit * outward;
     c.reach = select(c.reach > S(0.0), c.reach + (grow + outward), S(0.0));
@@ -96,7 +96,7 @@ struct PartialSlip {
 
     const S free = whole - (distance + moved), left = within(free - stuck, whole);
     const S root = inverse_cube_root(left * (whole * whole)), steep = whole * root, square = root * steep;
-    const S drop = min(lost - lost * (left * square), distance), after = within(free - c.stuck + drop, whole);
+    const S drop = min(lost - lost * (left * square), distance), after = max(free - c.stuck + drop, S(1e-9) * whole);
     shear -= away.unit * drop;
     away.length = distance + moved - drop;
     const S q = (after - left) * (square * steep);
@@ -108,23 +108,21 @@ struct PartialSlip {
   template <class S>
   EG_INLINE static Vec<S> slide(Curve<S>& c, const Vec<S>& shear, const Way<S>& away, Share<S> share,
                                 const Vec<S>& slip, const S& k0, const S& limit) {
-    const auto behind = away.length < S(0.0);
-    const S towards = dot(away.unit, slip), along = select(behind, -towards, towards);
-    const S from = max(away.length, -away.length);
-    const auto turns = along < S(0.0);
-    c.reach = select(turns, from * (S(2.0) - c.reversed), c.reach);
-    c.origin = select(turns, shear, c.origin);
-    c.reversed = select(turns, S(1.0), c.reversed);
-
-    const S distance = select(turns, S(0.0), from);
-    const auto elsewhere = turns | behind | (max(share.changed, -share.changed) > S(1e-3));
+    S along = dot(away.unit, slip), distance = away.length;
+    const auto elsewhere = (along < S(0.0)) | (distance < S(0.0)) | (share.changed * share.changed > S(1e-6));
     if (any(elsewhere)) {
+      along = select(distance < S(0.0), -along, along), distance = max(distance, -distance);
+      const auto turns = along < S(0.0);
+      c.reach = select(turns, distance * (S(2.0) - c.reversed), c.reach);
+      c.origin = select(turns, shear, c.origin);
+      c.reversed = select(turns, S(1.0), c.reversed);
+      distance = select(turns, S(0.0), distance);
       const S whole = scale(c, limit), left = within(whole - (distance + c.stuck), whole);
       const S root = inverse_cube_root(left * (whole * whole));
       share.left = select(elsewhere, left, share.left);
       share.square = select(elsewhere, root * (root * whole), share.square);
     }
-    const S length2 = dot(slip, slip), inverse = inverse_length(length2), step = length2 * inverse;
+    const S length2 = square_of(slip), inverse = rsqrt(length2), step = length2 * inverse;
     const S sticking = min(k0 * step, c.stuck), k1 = sticking * inverse, k2 = k0 - k1;  // Δs takes T by k1 + k2 θ
     c.stuck = c.stuck - sticking;
     const auto apart = distance > S(1e-12) * limit;

@@ -68,7 +68,8 @@ struct RoughHertzMindlin {
       return select(beyond2, bulk, select(beyond1, both, asperities));
     };
     return {pick(p.asperities, S(rough::ratio) * p.asperities, p.hertz), pick(S(c), S(b), S(1.5)),
-            pick(S(0.0), S(first) * p.s, S(first + second) * p.s), pick(S(1 / end1) * p.inverse_s, S(1 / (end2 - first)) * p.inverse_s, S(1.0))};
+            pick(S(0.0), S(first) * p.s, S(first + second) * p.s),
+            pick(S(1 / end1) * p.inverse_s, S(1 / (end2 - first)) * p.inverse_s, S(1.0))};
   }
 
   template <class S>
