@@ -198,7 +198,7 @@ Network StandingBounds::around(const State& state, const std::vector<Index>& gra
         wall_entries.push_back(side.spring - pairs);
   for (auto* list : {&entries, &wall_entries}) {
     std::ranges::sort(*list);
-    list->erase(std::ranges::unique(*list).begin(), list->end());
+    list->erase(std::unique(list->begin(), list->end()), list->end());
   }
   Network net = bare_network(scene_, state);
   const DampingSpec damping = damping_in_force(scene_, state);
