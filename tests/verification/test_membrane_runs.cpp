@@ -132,7 +132,7 @@ TEST(MembraneRun, CylinderBetweenGreasedEndsHoldsThePressure) {
 TEST(MembraneRun, CylinderHoldsThePressureAndTheFrictionOfItsEnds) {
   const auto& [scene, state] = confined();
   Mat3 ends;
-  visit_contacts(scene, state, [&](const ContactPoint& c) {
+  visit_contacts(scene, state, [&, &state = state](const ContactPoint& c) {
     if (c.j == no_index) ends += outer(c.force(), state.grains.position[c.i].vec() + c.branch);
   });
   const Mat3 s = contact_stress(state);
