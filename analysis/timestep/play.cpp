@@ -15,7 +15,7 @@ std::vector<GrainPlay> plays_of(const Sides& sides, const std::vector<double>& t
   };
   for (std::size_t c = 0; c < t.size(); ++c) {
     const Spring& s = net.springs[c];
-    if (!(s.normal > 0 || s.tangential > 0)) continue;
+    if (!acts(s)) continue;
     const bool split = sides.is_split(c);
     add(s.i, s.i == s.j ? 4 : split ? 1 + t[c] : 1, s, met[c]);
     if (s.j != no_index && s.j != s.i) add(s.j, split ? 1 + 1 / t[c] : 1, s, met[c]);

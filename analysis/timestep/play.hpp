@@ -47,6 +47,9 @@ inline Play play_of_couple(double twisting, double rolling, const Inertia& g) {
   return {std::abs(twisting - rolling) * g.inverse_inertia * sum_rounding, 0};
 }
 
+/// Whether a spring is counted.
+inline bool acts(const Spring& s) { return s.normal > 0 || s.tangential > 0; }
+
 /// How a spring that is counted may move.
 struct SpringMotion {
   double reach = 0;    ///< overlap that it is allowed [m]

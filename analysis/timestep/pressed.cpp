@@ -105,7 +105,8 @@ class Presser {
         const Spring& s = out.network.springs[c + k];
         set_direction(bound, c + k, acts(s) ? s.n : Vec3{});
       } else {
-        give_way(c + k, out);
+        Spring& s = out.network.springs[c + k];
+        s.normal *= give(c + k), s.tangential *= give(c + k);
       }
     }
   }
@@ -274,10 +275,9 @@ class Presser {
     }
   }
 
-  void give_way(std::size_t c, Pressed& out) const {
-    if (yields_.empty() || !(yields_[state_.contacts.i[c]] | yields_[state_.contacts.j[c]])) return;
-    Spring& s = out.network.springs[c];
-    s.normal *= yielding, s.tangential *= yielding;
+  /// By how much stiffer a pair counts.
+  double give(std::size_t c) const {
+    return !yields_.empty() && (yields_[state_.contacts.i[c]] | yields_[state_.contacts.j[c]]) ? yielding : 1;
   }
 
   /// A contact of a law with couples, which may be bonded.
@@ -324,9 +324,7 @@ class Presser {
     return c;
   }
   Counted counted(std::size_t c, const Met<double>& m, double reach) const {
-    const double give =
-        !yields_.empty() && (yields_[state_.contacts.i[c]] | yields_[state_.contacts.j[c]]) ? yielding : 1;
-    return counted(pair<double>(c, m), reach, m.inverse_mass, give,
+    return counted(pair<double>(c, m), reach, m.inverse_mass, give(c),
                    [&](std::size_t h) { return state_.contacts.history_at(c, h); });
   }
   Counted counted_wall(std::size_t w, const Met<double>& m, double reach) const {

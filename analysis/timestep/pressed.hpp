@@ -24,9 +24,6 @@ struct Pressed {
   std::vector<std::uint8_t> outran;  ///< whether it overlaps by more than it was allowed so far
 };
 
-/// Whether a spring is counted.
-inline bool acts(const Spring& s) { return s.normal > 0 || s.tangential > 0; }
-
 /// The springs of the present lists, all without stiffness.
 void lay_out(const Scene& scene, const State& state, Pressed& out);
 /// Takes all contacts for what they may be. Sets overlap and direction of state.policy.bound, reads the rest of it;

@@ -80,6 +80,12 @@ double turn_room(const StandingBound& bound, std::size_t i) {
   return room < bound.turning[i] * straight ? room / bound.turning[i] : straight;
 }
 
+/// Shares of that of every grain.
+void take_turn_room(const StandingBound& bound, double share, std::vector<double>& out) {
+  out.resize(bound.grain.size());
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = share * turn_room(bound, i);
+}
+
 /// No λmax(S_i) is above.
 double largest_block(const Sides& sides, const std::vector<double>& t, const BlockRanges& ranges) {
   double most = largest(ranges.low);
@@ -283,6 +289,7 @@ bool StandingBounds::add_excess(State& state, const Beyond& contact) const {
 
 bool StandingBounds::allow_more(State& state, const ContactSelection& selection, double time, double slack) {
   const std::size_t asked = selection.grains.size() + selection.walls.size();
+  if (asked == 0) return true;
   if (asked * few > state.contacts.size() + state.wall_contacts.size()) return false;
   bool below = true;
   for (const Beyond& b : look_beyond(scene_, state, selection, turn_, {time, slack})) {
@@ -294,8 +301,7 @@ bool StandingBounds::allow_more(State& state, const ContactSelection& selection,
 
 StandingCheck StandingBounds::check(State& state, double time, double slack) {
   const StandingBound& bound = state.policy.bound;
-  turn_.resize(state.grains.size());  // half of the room is for growth
-  for (std::size_t i = 0; i < turn_.size(); ++i) turn_[i] = 0.5 * turn_room(bound, i);
+  take_turn_room(bound, 0.5, turn_);  // the other half is for growth
   const Leave leave{bound, turn_};
   const auto pairs = outgrown_pairs(state, leave, time), walls = outgrown_walls(state, leave, time);
   StandingCheck result;
@@ -311,8 +317,7 @@ StandingCheck StandingBounds::check(State& state, double time, double slack) {
 
 bool StandingBounds::check_fresh(State& state, double time, double slack) {
   const StandingBound& bound = state.policy.bound;
-  turn_.resize(state.grains.size());  // all of the room may have been promised to the other contacts
-  for (std::size_t i = 0; i < turn_.size(); ++i) turn_[i] = turn_room(bound, i);
+  take_turn_room(bound, 1, turn_);  // all of the room may have been promised to the other contacts
   const auto walls = outgrown_walls(state, {bound, turn_}, time);
   return allow_more(state, {fresh_, walls}, time, slack);
 }
