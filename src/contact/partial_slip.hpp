@@ -143,11 +143,12 @@ struct PartialSlip {
     return select(far, S(2.0 / 3.0) * (theta * theta + theta * next + next * next) * reciprocal(theta + next), mean);
   }
 
-  /// Ends curves that have been followed to their end, or by sliding, and starts anew after pressing.
+  /// Ends curves that have been followed to their end, or by sliding, and starts anew after pressing. Works on `trial`,
+  /// which is there before `shear` and the same but for a contact that slides, whose curve ends anyway.
   template <class S>
   EG_INLINE static void close(Curve<S>& c, const Vec<S>& shear, const Vec<S>& trial, const S& limit) {
     const S zero(0.0);
-    const Vec<S> away = shear - c.origin;
+    const Vec<S> away = trial - c.origin;
     const S left = c.reach - c.stuck, whole = dot(away, away), tried = dot(trial, trial), most = limit * limit;
     const auto ended = (left < zero) | (whole > left * left) | (tried > most);
     c.origin = select(ended, Vec<S>{zero, zero, zero}, c.origin);
