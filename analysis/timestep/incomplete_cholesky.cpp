@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "timestep/patch.hpp"
+#include "timestep/tile.hpp"
 
 namespace eg {
 namespace {
@@ -19,33 +20,34 @@ class Factorisation {
   IncompleteCholesky run();
 
  private:
-  struct Link {
-    Index to;
-    Block block;  ///< rows: the owner; columns: `to`
-    double norm;  ///< of the factor's block (Frobenius), once there is one
+  /// From a grain to grains eliminated later; `to` apart, since it is searched.
+  struct Links {
+    std::vector<Index> to;
+    std::vector<Tile> block;  ///< rows: the owner; columns: `to`
+    std::size_t size() const { return to.size(); }
+    void add(Index grain, const Tile& tile) { to.push_back(grain), block.push_back(tile); }
   };
-  using Links = std::vector<Link>;
 
   void assemble_diagonal(std::size_t k, std::span<const Index> place, double sigma);
   void assemble_links(std::size_t k, std::span<const Index> place);
   bool eliminate(std::size_t k);
   bool drop(std::size_t a, std::size_t b, double size);
-  void subtract(const Link& left, const Link& right);
+  void subtract(std::size_t p, std::size_t q);
   bool round_off_is_covered() const;
 
-  static Link* find(Links& links, Index to) {
-    for (Link& link : links)
-      if (link.to == to) return &link;
-    return nullptr;
-  }
-  double room(std::size_t k) const { return diagonal_[k].diagonal().minCoeff(); }
-
+  /// The least entry of the diagonal of a grain's block, less what drops took.
+  double room(std::size_t k) const { return least_[k] - given_[k]; }
   const WeightedContacts& contacts_;
   const Sides& sides_;
   std::span<const Index> patch_;
   double sigma_, drop_;
-  std::vector<Block> diagonal_;
-  std::vector<Links> links_;          ///< from a grain to grains eliminated later
+  std::vector<Tile> diagonal_;
+  std::vector<double> least_;  ///< entry of the diagonal of a grain's block
+  std::vector<double> given_;  ///< what drops have taken from the diagonal of a grain's block
+  std::vector<Links> links_;
+  Links factor_;                      ///< those of the grain that is being eliminated
+  std::vector<double> norm_;          ///< of the factor's blocks (Frobenius)
+  std::vector<Index> slot_;           ///< of the marked row: a grain's place among its links, or no_index
   std::vector<std::size_t> updates_;  ///< eliminations that a grain's blocks have seen
   std::vector<std::size_t> drops_;    ///< blocks dropped beside its diagonal block
   std::size_t most_terms_ = 0, most_links_ = 0;
@@ -59,7 +61,10 @@ Factorisation::Factorisation(const WeightedContacts& contacts, std::span<const I
       sigma_(sigma),
       drop_(drop),
       diagonal_(patch.size()),
+      least_(patch.size()),
+      given_(patch.size(), 0),
       links_(patch.size()),
+      slot_(patch.size(), no_index),
       updates_(patch.size(), 0),
       drops_(patch.size(), 0) {
   const auto place = places(sides_, patch);
@@ -76,7 +81,8 @@ void Factorisation::assemble_diagonal(std::size_t k, std::span<const Index> plac
     const bool inside = side.role != Side::Role::alone && place[s.i] != no_index && place[s.j] != no_index;
     return inside ? contact_stiffness(s) : contacts_.weighted_stiffness(side);
   });
-  diagonal_[k] = sigma * (1 - reserve) * Block::Identity() - block;
+  diagonal_[k] = Tile(sigma * (1 - reserve) * Block::Identity() - block);
+  least_[k] = diagonal_[k].least_diagonal();
   most_terms_ = std::max(most_terms_, sides_.of(patch_[k]).size());
 }
 
@@ -91,56 +97,67 @@ void Factorisation::assemble_links(std::size_t k, std::span<const Index> place) 
     const Side far{side.spring, Side::Role::first, first ? ContactSide::second : ContactSide::first, false};
     const Block block =
         -(sides_.scaled_matrix(patch_[k], side).transpose() * contact_stiffness(s) * sides_.scaled_matrix(other, far));
-    if (Link* link = find(links_[k], to))
-      link->block += block;
+    Links& links = links_[k];
+    const auto known = static_cast<std::size_t>(std::ranges::find(links.to, to) - links.to.begin());
+    if (known == links.size())
+      links.add(to, Tile(block));
     else
-      links_[k].push_back({to, block, 0});
+      links.block[known] = links.block[known] + Tile(block);
   }
 }
 
 /// Takes what dropping a fill block of this size costs from both diagonal blocks, if it is little beside them.
 bool Factorisation::drop(std::size_t a, std::size_t b, double size) {
-  const double room_a = room(a), room_b = room(b);
-  if (!(room_a > 0 && room_b > 0 && size <= drop_ * std::sqrt(room_a * room_b))) return false;
-  const double ratio = std::sqrt(room_a / room_b);
-  diagonal_[a].diagonal().array() -= size * ratio;
-  diagonal_[b].diagonal().array() -= size / ratio;
+  const double room_a = room(a), room_b = room(b), both = room_a * room_b;
+  if (!(room_a > 0 && room_b > 0 && size * size <= drop_ * drop_ * both)) return false;
+  const double ratio = room_a / std::sqrt(both);
+  given_[a] += size * ratio, given_[b] += size / ratio;
   ++drops_[a], ++drops_[b];
   ++result_.dropped;
   return true;
 }
 
-/// Block (a, b) of what is left, a < b, becomes itself − left ᵀright, unless that is fill and can be dropped.
-void Factorisation::subtract(const Link& left, const Link& right) {
-  Links& links = links_[left.to];
-  Link* link = find(links, right.to);
+/// Block (a, b) of what is left, a and b the grains at places p < q of the factor's row, becomes itself − W_pᵀ W_q,
+/// unless that is fill and can be dropped. Row a is the marked one.
+void Factorisation::subtract(std::size_t p, std::size_t q) {
+  const Index a = factor_.to[p], b = factor_.to[q];
   constexpr double up = 1 + 1e-13;  // over round-off of a norm
-  if (!link && drop(left.to, right.to, left.norm * right.norm * up)) return;
-  const Block fill = left.block.transpose().lazyProduct(right.block);
-  if (link)
-    link->block -= fill;
-  else if (!drop(left.to, right.to, fill.norm() * up))
-    links.push_back({right.to, -fill, 0});
+  if (slot_[b] != no_index) {
+    links_[a].block[slot_[b]].subtract_product(factor_.block[p], factor_.block[q]);
+    return;
+  }
+  if (drop(a, b, norm_[p] * norm_[q] * up)) return;
+  Tile fill;
+  fill.subtract_product(factor_.block[p], factor_.block[q]);
+  if (!drop(a, b, fill.norm() * up)) links_[a].add(b, fill);
 }
 
 bool Factorisation::eliminate(std::size_t k) {
-  const Eigen::LLT<Block> cholesky(diagonal_[k]);
+  const Eigen::LLT<Block> cholesky(diagonal_[k].block() - given_[k] * Block::Identity());
   if (cholesky.info() != Eigen::Success) return false;
-  Links links = std::move(links_[k]);
+  const Block lower = cholesky.matrixL();
+  factor_ = std::move(links_[k]);
   links_[k] = {};
-  most_links_ = std::max(most_links_, links.size());
-  result_.kept += links.size();
-  for (Link& link : links) {
-    cholesky.matrixL().solveInPlace(link.block);
-    link.norm = link.block.norm();
-    diagonal_[link.to].noalias() -= link.block.transpose().lazyProduct(link.block);
-    ++updates_[link.to];
+  most_links_ = std::max(most_links_, factor_.size());
+  result_.kept += factor_.size();
+  norm_.resize(factor_.size());
+  for (std::size_t p = 0; p < factor_.size(); ++p) {
+    Tile& w = factor_.block[p];
+    const Index to = factor_.to[p];
+    w.solve_lower(lower);
+    norm_[p] = w.norm();
+    diagonal_[to].subtract_product(w, w);
+    least_[to] = diagonal_[to].least_diagonal();
+    ++updates_[to];
   }
-  for (std::size_t p = 0; p < links.size(); ++p)
-    for (std::size_t q = p + 1; q < links.size(); ++q) {
-      const bool ordered = links[p].to < links[q].to;
-      subtract(ordered ? links[p] : links[q], ordered ? links[q] : links[p]);
-    }
+  for (std::size_t p = 0; p < factor_.size(); ++p) {
+    const Links& row = links_[factor_.to[p]];
+    for (std::size_t l = 0; l < row.size(); ++l) slot_[row.to[l]] = static_cast<Index>(l);
+    const std::size_t marked = row.size();
+    for (std::size_t q = 0; q < factor_.size(); ++q)
+      if (factor_.to[q] > factor_.to[p]) subtract(p, q);
+    for (std::size_t l = 0; l < marked; ++l) slot_[row.to[l]] = no_index;
+  }
   return true;
 }
 

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
+#include "base/power.hpp"
 #include "timestep/block_power.hpp"
 #include "timestep/triangle.hpp"
 
@@ -13,6 +15,9 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr std::size_t lanes = Batch::lanes;
+constexpr double reach = 5;        // a sweep moves ln T by reach/(q + 1) of what it wishes, ...
+constexpr double farthest = 0.25;  // ... no more than this,
+constexpr double momentum = 0.3;   // and by this share of its last motion; more of any of the three diverges
 constexpr double widest = 2000;  // largest entry of a T or T⁻¹ in use, about: beyond it a contact is one-sided anyway
 
 std::size_t groups_of(std::size_t count) { return (count + lanes - 1) / lanes; }
@@ -75,32 +80,31 @@ EG_INLINE Symmetric3 regular(const Symmetric3& a, Batch trace) {
   return (a * (Batch(1.0) / trace)).plus_identity(Batch(1e-3));
 }
 
-Batch exp_lanes(Batch x) {
-  for (std::size_t l = 0; l < lanes; ++l) x.v[l] = std::exp(x.v[l]);
-  return x;
-}
-Batch log_lanes(Batch x) {
-  for (std::size_t l = 0; l < lanes; ++l) x.v[l] = std::log(x.v[l]);
-  return x;
+Batch natural_exponential(Batch x) { return binary_power(Batch(std::numbers::log2e), x); }
+/// −∞ is −1e300 here.
+Batch natural_logarithm(Batch x) {
+  const Batch log = binary_logarithm(max(x, Batch(1e-300))) * Batch(std::numbers::ln2);
+  return select(x > Batch(1e-300), log, Batch(-1e300));
 }
 
 /// T moved a share `step` of the way to the T* that A and B wish for, ln A and ln B larger by log_a and log_b than the
 /// matrices given: its size on a logarithmic scale, its shape along the geodesic, which is halved twice and then so
 /// short that arithmetic and harmonic means will do.
 EG_INLINE Symmetric3 moved(const Symmetric3& t, const Symmetric3& a, const Symmetric3& b, Batch log_a, Batch log_b,
-                           double step) {
+                           Batch step) {
   const Batch trace_a = a.trace(), trace_b = b.trace(), trace_t = t.trace(), one(1.0);
   Symmetric3 shape = geometric_mean(inverse(regular(a, trace_a)), regular(b, trace_b), 5);
   const Batch trace = shape.trace();
   shape = shape * (trace_t / trace);
   shape = geometric_mean(t, shape, 3);
   shape = geometric_mean(t, shape, 2);
-  const Batch share(4 * step), rest(1 - 4 * step);
+  const Batch share = Batch(4.0) * step, rest = Batch(1.0) - share;
   const Symmetric3 high = t * rest + shape * share;
   const Symmetric3 low = inverse(inverse(t) * rest + inverse(shape) * share);
   const Symmetric3 turned = geometric_mean(high, low, 1);
-  const Batch wish = Batch(0.5) * (log_b - log_a + log_lanes(trace_b / trace_a)) + log_lanes(trace / trace_t);
-  const Batch far = exp_lanes(max(Batch(-2.0), min(Batch(2.0), Batch(step) * wish)));
+  const Batch wish =
+      Batch(0.5) * (log_b - log_a + natural_logarithm(trace_b / trace_a)) + natural_logarithm(trace / trace_t);
+  const Batch far = natural_exponential(max(Batch(-2.0), min(Batch(2.0), step * wish)));
   return turned * (far * trace_t / turned.trace());
 }
 
@@ -112,6 +116,7 @@ WeightedContacts::WeightedContacts(const Sides& sides, SplittingWeights weights)
 
 void WeightedContacts::set_weights(SplittingWeights weights) {
   weights_ = std::move(weights);
+  before_ = weights_.matrix;
   grains_.clear();
   matrix_of_.clear(), place_.clear(), pairs_.clear();
   if (weights_.matrix_spring.empty()) return;
@@ -178,8 +183,8 @@ Symmetric3 load_matrices(const std::vector<SymmetricSix>& matrix, std::size_t fi
 
 /// Whether T is one to work with: false for what is not a number too.
 Mask is_fit(const Symmetric3& t, const Symmetric3& inverse) {
-  return (t.frobenius() < Batch(widest)) & (inverse.frobenius() < Batch(widest)) & (t.trace() > Batch(0.0)) &
-         (inverse.trace() > Batch(0.0)) & (distance_from_inverse(t, inverse) < Batch(1e-8));
+  return is_positive(t) & (t.frobenius() < Batch(widest)) & (inverse.frobenius() < Batch(widest)) &
+         (distance_from_inverse(t, inverse) < Batch(1e-8));
 }
 
 }  // namespace
@@ -263,10 +268,10 @@ std::vector<WeightedContacts::Power> WeightedContacts::powers(int squarings) con
     }
     Triangle power;
     for (std::size_t k = 0; k < 21; ++k) power.a[k] = g[k];
-    Batch log_scale = log_lanes(normalise(power));
+    Batch log_scale = natural_logarithm(normalise(power));
     for (int s = 0; s < squarings; ++s) {
       power = square(power);
-      log_scale = log_scale + log_scale + log_lanes(normalise(power));
+      log_scale = log_scale + log_scale + natural_logarithm(normalise(power));
     }
     for (std::size_t k = 0; k < 21; ++k) store_lanes(g.value[k], power.a[k]);
     for (std::size_t l = 0; l < count; ++l) {
@@ -277,9 +282,16 @@ std::vector<WeightedContacts::Power> WeightedContacts::powers(int squarings) con
   return rows;
 }
 
+/// How many times 1/(q + 1) of the way to T* a sweep may go: S_i^q changes as T^q times the share of one contact in
+/// S_i.
+double WeightedContacts::reach(Index spring) const {
+  const Spring& s = sides_.network().springs[spring];
+  return std::clamp(0.5 * static_cast<double>(std::min(sides_.of(s.i).size(), sides_.of(s.j).size())), 2.0, 5.0);
+}
+
 void WeightedContacts::sweep(int squarings) {
   const std::vector<Power> power = powers(squarings);
-  const double step = std::min(0.25, 2 / (std::exp2(squarings) + 1));
+  const double per_reach = 1 / (std::exp2(squarings) + 1);
   const auto& network = sides_.network();
   const auto groups = static_cast<std::ptrdiff_t>(groups_of(pairs_.size()));
 #pragma omp parallel for schedule(static) if (groups > 256)
@@ -302,9 +314,13 @@ void WeightedContacts::sweep(int squarings) {
       return sandwich(seen_from_contact(p, springs.n, scale[0], arm * scale[1]), springs.root, springs.excess,
                       springs.n);
     };
-    Batch log_a, log_b;
+    Batch log_a, log_b, step;
+    for (std::size_t l = 0; l < lanes; ++l)
+      step.v[l] = std::min(farthest, reach(which[std::min(l, count - 1)]) * per_reach);
     const Symmetric3 a = wish(&Spring::i, springs.arm_i, -1, log_a), b = wish(&Spring::j, springs.arm_j, 1, log_b);
-    const Symmetric3 t = moved(load_matrices(weights_.matrix, first, count), a, b, log_a, log_b, step);
+    const Symmetric3 now = load_matrices(weights_.matrix, first, count), last = load_matrices(before_, first, count);
+    for (std::size_t l = 0; l < count; ++l) before_[first + l] = weights_.matrix[first + l];
+    const Symmetric3 t = moved(now, a, b, log_a, log_b, step) + (now + last * Batch(-1.0)) * Batch(momentum);
     const Symmetric3 back = inverse(t);
     store(first, count, t, back, is_fit(t, back));
   }

@@ -42,9 +42,9 @@ class WeightedContacts {
   SplittingBound bound(const BlockRanges& ranges) const;
 
   /// One step of all matrices towards the minimum of Σ tr S_i^(q+1), q = 2^squarings. Stationarity is T A T = B with
-  /// A = A_i S_i^q A_iᵀ and B = A_j S_j^q A_jᵀ, so T* = A⁻¹ # B, the geometric mean (Bhatia 2007); T moves a step
-  /// min(0.25, 2/(q+1)) towards T*, because all neighbours move at once. Eight contacts at a time, the same for any
-  /// number of threads.
+  /// A = A_i S_i^q A_iᵀ and B = A_j S_j^q A_jᵀ, so T* = A⁻¹ # B, the geometric mean (Bhatia 2007); T goes a small part
+  /// of the way to T*, because all neighbours move at once, and on by part of its last step (Polyak 1964). Eight
+  /// contacts at a time, the same for any number of threads.
   void sweep(int squarings);
 
  private:
@@ -59,12 +59,14 @@ class WeightedContacts {
     double log_scale;  ///< S^(2^squarings) = e^log_scale · lower
   };
   Lower lower_triangle(Index grain) const;
+  double reach(Index spring) const;
   std::vector<Power> powers(int squarings) const;
 
   const Sides& sides_;
   SplittingWeights weights_;
   std::vector<Index> matrix_of_;  ///< a spring: its place in the matrices, or no_index
   std::vector<Pair> pairs_;
+  std::vector<SymmetricSix> before_;   ///< the matrices one sweep ago
   std::vector<Index> grains_, place_;  ///< grains of contacts with matrices; a grain's place among them
 };
 

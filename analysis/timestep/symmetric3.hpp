@@ -30,6 +30,16 @@ EG_INLINE Symmetric3 inverse(const Symmetric3& a) {
   return adjugate * (Batch(1.0) / determinant);
 }
 
+/// Positive definite beyond doubt: every leading minor is larger than 1e-12 of the terms that it is the sum of, which
+/// round-off cannot bring about.
+EG_INLINE Mask is_positive(const Symmetric3& a) {
+  const Batch zero(0.0), sure(1e-12), xy2 = a.xy * a.xy, xz2 = a.xz * a.xz, yz2 = a.yz * a.yz;
+  const Batch two = a.xx * a.yy, three = two * a.zz, mixed = Batch(2.0) * (a.xy * a.yz * a.xz);
+  const Batch taken = a.xx * yz2 + a.yy * xz2 + a.zz * xy2;
+  return (a.xx > zero) & (a.yy > zero) & (a.zz > zero) & (two - xy2 > sure * (two + xy2)) &
+         (three + mixed - taken > sure * (three + abs(mixed) + taken));
+}
+
 /// ‖A B − 1‖, Frobenius.
 EG_INLINE Batch distance_from_inverse(const Symmetric3& a, const Symmetric3& b) {
   const Vec<Batch> x = a.times({b.xx, b.xy, b.xz}), y = a.times({b.xy, b.yy, b.yz}), z = a.times({b.xz, b.yz, b.zz});

@@ -11,11 +11,11 @@
 namespace eg {
 namespace {
 
-constexpr double drop = 1e-3, small_drop = 3e-4;  // fill given up by the incomplete factorisation
+constexpr double drop = 1e-3, small_drop = 1e-4;  // fill given up by the incomplete factorisation
 constexpr std::size_t small = 400;                // grains that are always worth a factorisation
 constexpr double hot = 0.97;                      // of σ: grains whose contacts get matrices
-constexpr int sweeps = 4;                         // of the matrices at each exponent
-constexpr int first_squaring = 3, last_squaring = 7;
+constexpr int sweeps = 7;                         // of the matrices at each exponent
+constexpr int first_squaring = 5, last_squaring = 7;
 
 class Search {
  public:
@@ -23,7 +23,9 @@ class Search {
       : sides_(sides), options_(options), ranges_(weights.ranges), contacts_(sides, {weights.t, {}, {}}) {}
 
   UpperEnd run() {
-    if (split() || factorise(options_.width, 2, 0.5, drop) || factorise(options_.loose, 2, 0.25, drop)) return end_;
+    if (split() || factorise(options_.width, 2, 0.5, drop, 2 * small) ||
+        factorise(options_.width, 2, 0.5, small_drop) || factorise(options_.loose, 2, 0.25, drop))
+      return end_;
     improve();
     if (!(end_.value <= goal(options_.loose))) take(collatz_bound(sides_.network()).value, "block Collatz-Wielandt");
     return end_;
@@ -43,12 +45,14 @@ class Search {
     return end_.value <= goal(options_.width);
   }
 
-  /// Incomplete Cholesky of what splitting leaves open at this width, if that is at most this share of the grains.
-  bool factorise(double width, int shells, double share, double fill) {
+  /// Incomplete Cholesky of what splitting leaves open at this width, if that is at most this share of the grains or
+  /// `most` of them.
+  bool factorise(double width, int shells, double share, double fill, std::size_t most = small) {
     const double sigma = goal(width);
     if (end_.value <= sigma) return true;
     const auto patch = stiff_patch(contacts_, ranges_, sigma, shells);
-    if (static_cast<double>(patch.size()) > std::max<double>(small, share * static_cast<double>(sides_.size())))
+    if (static_cast<double>(patch.size()) >
+        std::max(static_cast<double>(most), share * static_cast<double>(sides_.size())))
       return false;
     if (!factorise_below(contacts_, patch, sigma, fill).below) return false;
     take(sigma, "incomplete Cholesky of the stiff patches");
@@ -62,8 +66,9 @@ class Search {
       contacts_.make_matrices(ranges_.low, hot * std::min(1.0, goal(options_.loose) / maximum));
       for (int k = 0; k < sweeps; ++k) contacts_.sweep(squarings);
       contacts_.update(ranges_);
-      if (factorise(options_.loose, 1, 0.2, small_drop)) return;
+      if (factorise(options_.loose, 1, 0.15, small_drop)) return;
     }
+    if (factorise(options_.loose, 1, 0.3, small_drop, 2 * small)) return;
     split();
   }
 

@@ -48,7 +48,7 @@ struct Batch {
   Double8 v;
 
   Batch() = default;
-  EG_INLINE Batch(double s) : v(Double8{} + s) {}
+  EG_INLINE Batch(double s) : v{s, s, s, s, s, s, s, s} {}
   EG_INLINE Batch(Double8 x) : v(x) {}
   EG_INLINE double operator[](std::size_t k) const { return v[k]; }
 
