@@ -16,7 +16,8 @@ namespace {
 
 constexpr double gain = 0.5;            // α; the proof needs α ≤ 2/3, the rest is room for K to grow within a step
 constexpr double patience = 400;        // steps in which the part that builds up takes over a lasting speed
-constexpr double near_target = 0.05;    // it sets in there, or the servo would overshoot
+constexpr double near_target = 0.01;    // it sets in there, or the servo would overshoot
+constexpr double ease = 0.2;            // of the target: from there on a servo approaches it at less than full speed
 constexpr double slow_enough = 2.5e-3;  // inertial number below which straining is quasi-static
 
 constexpr std::uint64_t region_steps = 100;  // between looks into a servo's region
@@ -205,7 +206,9 @@ void BodyControl::drive(State& state, double dt) const {
     const double at_once = touched ? gain * excess / (body.stiffness * dt) : excess < 0 ? -d.max_speed : 0.0;
     const bool met = body.follow != 0 || std::abs(excess) < near_target * target;  // since the stage began
     body.follow = touched && met ? std::clamp(body.follow + at_once / patience, -d.max_speed, d.max_speed) : 0.0;
-    const double speed = std::clamp(at_once + body.follow, -d.max_speed, d.max_speed);  // outward
+    // The specimen's own motion carries on when the servo stops, so it comes to its target slowly.
+    const double most = d.max_speed * (met ? 1 : std::min(1.0, std::abs(excess / (ease * target))));
+    const double speed = std::clamp(at_once + body.follow, -most, most);  // outward
     if (d.radial)
       body.opening = wall_of(state, d.body, Wall::cylinder)->hollow ? speed : -speed;
     else

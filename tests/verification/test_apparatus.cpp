@@ -69,23 +69,27 @@ void run(const Scene& scene, State& state, const RunObserver& observer = {}) {
 }
 
 TEST(Servo, HoldsItsTargetWithoutOvershoot) {
-  const Scene scene =
-      parse_scene(grains + smooth_box + load +
-                      "[[stage]]\nname = \"hold\"\nlocal_damping = 0.4\nbody = { z_high = { stress = 100e3 } }\n" +
-                      "until = { steps = 3000 }\n",
-                  "a.toml");
-  State state = test::state_of(scene);
-  double most = 0, worst = 0;
-  RunObserver observer;
-  observer.step = [&](const State& s, const RunStatus& status) {
-    const double stress = body_load(scene, s, drive_of(scene, s, 5)).stress();
-    most = std::max(most, stress);
-    if (status.stage.name == "hold") worst = std::max(worst, std::abs(stress / 100e3 - 1));
-  };
-  run(scene, state, observer);
-  EXPECT_LT(most, 1.02 * 100e3);
-  EXPECT_LT(worst, 5e-3);
-  EXPECT_NEAR(contact_stress(state)(2, 2), 100e3, 1e-2 * 100e3);  // inside as on the boundary
+  for (const int seed : {2, 3, 5}) {
+    std::string text = grains;
+    text.replace(text.find("seed = 2"), 8, "seed = " + std::to_string(seed));
+    const Scene scene =
+        parse_scene(text + smooth_box + load +
+                        "[[stage]]\nname = \"hold\"\nlocal_damping = 0.4\nbody = { z_high = { stress = 100e3 } }\n" +
+                        "until = { steps = 3000 }\n",
+                    "a.toml");
+    State state = test::state_of(scene);
+    double most = 0, worst = 0;
+    RunObserver observer;
+    observer.step = [&](const State& s, const RunStatus& status) {
+      const double stress = body_load(scene, s, drive_of(scene, s, 5)).stress();
+      most = std::max(most, stress);
+      if (status.stage.name == "hold") worst = std::max(worst, std::abs(stress / 100e3 - 1));
+    };
+    run(scene, state, observer);
+    EXPECT_LT(most, 1.02 * 100e3) << seed;
+    EXPECT_LT(worst, 5e-3) << seed;
+    EXPECT_NEAR(contact_stress(state)(2, 2), 100e3, 1e-2 * 100e3) << seed;  // inside as on the boundary
+  }
 }
 
 /// Rough side walls carry a part: inside there is less than on the lid.
