@@ -20,6 +20,7 @@ namespace {
 constexpr double direction_error = 1e-7;  // of a unit vector kept in single precision
 constexpr double most_slack = 2;          // by which an overlap may grow beyond what is foreseen, at most [-]
 constexpr double up_to = 0.8;             // of the bound: what contacts are given of the room of their grains
+constexpr double near = 0.5;              // of that, for pairs that do not touch yet, by which they count before they do
 constexpr double widest = 100;            // weight
 constexpr double nearest = 0.02;          // room of a grain below the bound, as the weights see it [of the bound]
 constexpr std::size_t lanes = Contacts::lanes;
@@ -84,13 +85,13 @@ class Presser {
     const auto pair = this->pair<Batch>(c, m);
     const Batch zero(0.0);
     const Mask real = m.distance > Batch(1e-140);  // padding has no length
-    const Batch reach = select(real, allowed(pair, m, max(side_i.x, side_j.x)), zero);
+    const Batch before = max(load_lanes(bound.overlap.data() + c), zero);
+    const Batch reach = select(real, allowed(pair, m, max(side_i.x, side_j.x), before), zero);
     const NormalResponse<Batch> at = response(pair, reach);
     const Mask counts = reach > zero;
     const Batch kn = select(counts, damped(at.stiffness, m.inverse_mass, damping_.normal_ratio), zero);
     const Batch kt = select(counts, damped(at.tangential, m.inverse_mass, damping_.shear_ratio), zero);
     store(c, m, reach, kn, kt, out);
-    const Batch before = max(load_lanes(bound.overlap.data() + c), Batch(0.0));
     const Mask outran = real & (m.g.overlap > before);
     for (std::size_t k = 0; k < lanes; ++k) out.outran[c + k] = lane(outran, k);
     store_lanes(out.weight.data() + c, weights(c, side_i, side_j, kn, kt));
@@ -113,7 +114,7 @@ class Presser {
 
   void press_wall(std::size_t w, StandingBound& bound, Pressed& out) const {
     const auto m = met_wall(w);
-    const double reach = allowed(wall_pair(w), m, rows_[state_.wall_contacts[w].grain].x);
+    const double reach = allowed(wall_pair(w), m, rows_[state_.wall_contacts[w].grain].x, bound.wall_overlap[w]);
     const Counted c = counted_wall(w, m, reach);
     const std::size_t at = state_.contacts.size() + w;
     Spring& s = out.network.springs[at];
@@ -130,7 +131,7 @@ class Presser {
     const auto m = met<double>(c);
     const Vec3 from = counted_direction(bound_, c);
     const auto pair = this->pair<double>(c, m);
-    const double may = bound_.overlap[c], reach = allowed(pair, m, std::max(rows_[i].x, rows_[j].x));
+    const double may = bound_.overlap[c], reach = allowed(pair, m, std::max(rows_[i].x, rows_[j].x), may);
     if (!is_beyond(m, from, may, foreseen(pair, m), std::min(turn[i], turn[j]))) return;
     found.push_back({i, j, c, m.g.n, turned(m, from), m.approach.turning * options_.time, m.g.overlap > may,
                      counted(c, m, std::max(may, reach)), norm(from) > 0 ? counted(c, m, may) : Counted{}});
@@ -140,7 +141,7 @@ class Presser {
     const auto m = met_wall(w);
     const Vec3 from = bound_.wall_direction[w];
     const auto pair = wall_pair(w);
-    const double may = bound_.wall_overlap[w], reach = allowed(pair, m, rows_[i].x);
+    const double may = bound_.wall_overlap[w], reach = allowed(pair, m, rows_[i].x, may);
     if (!is_beyond(m, from, may, foreseen(pair, m), turn[i])) return;
     found.push_back({i, no_index, w, m.g.n, turned(m, from), m.approach.turning * options_.time, m.g.overlap > may,
                      counted_wall(w, m, std::max(may, reach)), norm(from) > 0 ? counted_wall(w, m, may) : Counted{}});
@@ -233,17 +234,18 @@ class Presser {
     return max(reach, m.g.overlap + min(m.approach.driven * S(options_.time), growth));
   }
 
-  /// What a contact may grow to unnoticed; `most`: bound of the stiffer of its grains. 0: it touches nothing till then.
+  /// What a contact may grow to unnoticed; `most`: bound of the stiffer of its grains, for which it was allowed `before`.
+  /// 0: it touches nothing till then.
   template <class S>
-  S allowed(const Pair<S>& pair, const Met<S>& m, const S& most) const {
+  S allowed(const Pair<S>& pair, const Met<S>& m, const S& most, const S& before) const {
     const S overlap = max(m.g.overlap, S(0.0)), grown = m.g.overlap + m.approach.speed * S(options_.time);
     S reach = foreseen(pair, m) + S(options_.slack) * overlap;
-    if (bound_.value > 0) {
-      const S stiffer = min(S(up_to * bound_.value) * reciprocal(max(most, S(1e-3 * bound_.value))), S(10.0));
-      const S roomy = clamp(stiffer * stiffer - S(1.0), options_.slack, most_slack);
-      reach = max(reach, max(overlap * (S(1.0) + roomy), clamp(S(2.0) * (stiffer - S(1.0)), 0, 1) * S(usual_)));
-    }
-    return select(grown > S(0.0), reach, S(0.0));
+    if (!(bound_.value > 0)) return select(grown > S(0.0), reach, S(0.0));
+    const S stiffer = min(S(up_to * bound_.value) * reciprocal(max(most, S(1e-3 * bound_.value))), S(10.0));
+    const S usual = clamp(S(2.0) * (stiffer - S(1.0)), 0, 1) * S(usual_);
+    const S roomy = min(before * stiffer * stiffer, overlap * S(1 + most_slack) + S(usual_));
+    reach = max(reach, max(roomy, usual));
+    return select(grown + S(near) * usual > S(0.0), max(reach, S(0.0)), S(0.0));
   }
 
   static double turned(const Met<double>& m, const Vec3& from) {
