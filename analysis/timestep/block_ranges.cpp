@@ -4,57 +4,13 @@
 #include <array>
 #include <limits>
 
-#include "base/batch.hpp"
-#include "timestep/triangle.hpp"
+#include "timestep/block_sums.hpp"
 
 namespace eg {
 namespace {
 
-// Products and roots of traces of positive semidefinite 6×6 matrices: relative error far below this, at any power used.
-constexpr double power_error = 1e-11;
-
-/// The distinct numbers in Σ w BᵀkB over sides, B = [s 1, a n×]: with e = w(kn − kt), f = s w kt a, h = w kt a²
-/// they are Σ e nnᵀ (xx yy zz yz xz xy), Σ w kt, Σ f n and Σ h nnᵀ; n×(1 − nnᵀ)n× = −(1 − nnᵀ) gives the rest.
-struct alignas(64) Sums {
-  Double8 first{};   ///< Σ e nnᵀ, Σ w kt, Σ f x
-  Double8 second{};  ///< Σ h nnᵀ, Σ f y, Σ f z
-};
-
-/// A spring of couples: k_r (1 − nnᵀ) + k_t nnᵀ on the rotations, which is tr H − H for H = (k_r − k_t) nnᵀ + ½ k_t.
-void add_couple(Sums& sums, const Spring& s, double w) {
-  const double excess = w * (s.tangential - s.normal), twist = 0.5 * w * s.normal;
-  const Vec3& n = s.n;
-  sums.second += Double8{excess * n.x * n.x + twist, excess * n.y * n.y + twist, excess * n.z * n.z + twist,
-                         excess * n.y * n.z,         excess * n.x * n.z,         excess * n.x * n.y};
-}
-
-EG_INLINE void add_side(Sums& sums, const Spring& s, const Side& side, double w) {
-  if (s.couple) {
-    if (!side.own_image) add_couple(sums, s, w);
-    return;
-  }
-  double e = w * (s.normal - s.tangential), g = w * s.tangential, f, h;
-  if (side.own_image) {  // both ends move alike: only the turning is left
-    const double arm = s.arm_i + s.arm_j;
-    h = g * arm * arm;
-    e = g = f = 0;
-  } else {
-    const bool first = side.matrix == ContactSide::first;
-    const double arm = first ? s.arm_i : s.arm_j;
-    f = first ? -g * arm : g * arm;
-    h = g * arm * arm;
-  }
-  const Double4 n{s.n.x, s.n.y, s.n.z, 1};
-  const Double8 left = __builtin_shufflevector(n, n, 0, 1, 2, 1, 0, 0, 3, 0);
-  const Double8 right = __builtin_shufflevector(n, n, 0, 1, 2, 2, 2, 1, 3, 3);
-  const Double8 products = left * right;  // xx yy zz yz xz xy 1 x
-  const Double8 tail = __builtin_shufflevector(n, n, 0, 0, 0, 0, 0, 0, 1, 2);
-  sums.first += products * Double8{e, e, e, e, e, e, g, f};
-  sums.second += __builtin_shufflevector(products, tail, 0, 1, 2, 3, 4, 5, 14, 15) * Double8{h, h, h, h, h, h, f, f};
-}
-
-EG_INLINE Sums sum_sides(const Sides& sides, std::span<const double> t, Index grain) {
-  Sums sums;
+EG_INLINE BlockSums sum_sides(const Sides& sides, std::span<const double> t, Index grain) {
+  BlockSums sums;
   for (const Side& side : sides.of(grain)) {
     double w = 1;
     if (!t.empty() && side.role != Side::Role::alone)
@@ -64,62 +20,20 @@ EG_INLINE Sums sum_sides(const Sides& sides, std::span<const double> t, Index gr
   return sums;
 }
 
-/// M^−½ (…) M^−½ from the sums and the scales of eight grains.
-EG_INLINE Triangle scaled_blocks(const std::array<Batch, 16>& s, const std::array<Batch, 6>& d) {
-  Triangle x;
-  const Batch fx = s[7], fy = s[14], fz = s[15], turn = s[8] + s[9] + s[10];
-  for (std::size_t r = 0; r < 3; ++r)
-    for (std::size_t c = 0; c <= r; ++c) {
-      const std::size_t place = r == c ? r : 6 - r - c;  // xx yy zz yz xz xy
-      const Batch e = s[place], h = s[8 + place];
-      x(r, c) = d[r] * d[c] * (r == c ? e + s[6] : e);
-      x(3 + r, 3 + c) = d[3 + r] * d[3 + c] * (r == c ? turn - h : -h);
-    }
-  const Batch zero(0.0);
-  const Batch cross[3][3] = {{zero, -fz, fy}, {fz, zero, -fx}, {-fy, fx, zero}};
-  for (std::size_t r = 0; r < 3; ++r)
-    for (std::size_t c = 0; c < 3; ++c) x(3 + c, r) = d[r] * d[3 + c] * cross[r][c];
-  return x;
-}
-
-struct Range {
-  Batch low, high;
-};
-
-EG_INLINE Range range_of(Triangle block) {
-  const Batch scale = normalise(block);
-  Triangle power = block;
-  Batch trace[4];
-  for (Batch& each : trace) {
-    power = square(power);
-    each = normalise(power);
-  }
-  const Batch low = scale * trace_of_product(power, block);
-  const Batch last = trace_of_product(power, power);
-  const Batch root = sqrt(trace[0] * sqrt(trace[1] * sqrt(trace[2] * sqrt(trace[3] * sqrt(last)))));
-  return {low, scale * root * Batch(1 + power_error)};
-}
-
 EG_INLINE void eight_ranges(const Sides& sides, std::span<const double> t, std::span<const Index> grains,
                             BlockRanges& ranges) {
-  std::array<Sums, 8> sums;
+  std::array<BlockSums, 8> sums;
   std::array<std::array<double, 8>, 6> scale{};
   for (std::size_t k = 0; k < grains.size(); ++k) {
     sums[k] = sum_sides(sides, t, grains[k]);
     const auto d = sides.scale(grains[k]);
     for (int c = 0; c < 6; ++c) scale[static_cast<std::size_t>(c)][k] = d(c);
   }
-  std::array<Batch, 16> s;
-  const auto* quads = reinterpret_cast<const Double4*>(sums.data());
-  for (std::size_t q = 0; q < 4; ++q) {
-    const auto row = [&](std::size_t k) { return quads[4 * k + q]; };
-    const auto columns =
-        transpose_rows({join(row(0), row(4)), join(row(1), row(5)), join(row(2), row(6)), join(row(3), row(7))});
-    s[4 * q] = columns.x, s[4 * q + 1] = columns.y, s[4 * q + 2] = columns.z, s[4 * q + 3] = columns.w;
-  }
+  std::array<const BlockSums*, 8> rows;
+  for (std::size_t k = 0; k < 8; ++k) rows[k] = &sums[k];
   std::array<Batch, 6> d;
   for (std::size_t c = 0; c < 6; ++c) d[c] = load_lanes(scale[c].data());
-  const Range range = range_of(scaled_blocks(s, d));
+  const EightRanges range = range_of(scaled_blocks(columns_of(rows), d));
   for (std::size_t k = 0; k < grains.size(); ++k) {
     const double terms = static_cast<double>(sides.of(grains[k]).size());
     ranges.low[grains[k]] = range.low[k];

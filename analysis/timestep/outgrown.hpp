@@ -12,6 +12,9 @@ namespace eg {
 /// How fast contacts are taken to close, over how fast they do.
 inline constexpr double closing_margin = 1.5;
 
+/// Of a unit vector kept in single precision, as StandingBound::direction is.
+inline constexpr double direction_error = 1e-7;
+
 /// What contacts may do unnoticed: overlaps and directions as in StandingBound, and a value a grain [-], how far off
 /// the directions of its contacts may be, |n − n₀|.
 struct Leave {

@@ -17,7 +17,6 @@
 namespace eg {
 namespace {
 
-constexpr double direction_error = 1e-7;  // of a unit vector kept in single precision
 constexpr double most_slack = 2;          // by which an overlap may grow beyond what is foreseen, at most [-]
 constexpr double up_to = 0.8;             // of the bound: what contacts are given of the room of their grains
 constexpr double near = 0.5;              // of that, for pairs that do not touch yet, by which they count before they do
@@ -77,52 +76,63 @@ class Presser {
     }
   }
 
-  /// Eight pairs.
+  /// Eight pairs, into the network.
   void press(std::size_t c, StandingBound& bound, Pressed& out) const {
-    const Index *i = state_.contacts.i.data() + c, *j = state_.contacts.j.data() + c;
-    const auto m = met<Batch>(c);
-    const Columns<Batch> side_i = load_rows<Batch>(rows_.data(), i), side_j = load_rows<Batch>(rows_.data(), j);
-    const auto pair = this->pair<Batch>(c, m);
-    const Batch zero(0.0);
-    const Mask real = m.distance > Batch(1e-140);  // padding has no length
-    const Batch before = max(load_lanes(bound.overlap.data() + c), zero);
-    const Batch reach = select(real, allowed(pair, m, max(side_i.x, side_j.x), before), zero);
-    const NormalResponse<Batch> at = response(pair, reach);
-    const Mask counts = reach > zero;
-    const Batch kn = select(counts, damped(at.stiffness, m.inverse_mass, damping_.normal_ratio), zero);
-    const Batch kt = select(counts, damped(at.tangential, m.inverse_mass, damping_.shear_ratio), zero);
-    store(c, m, reach, kn, kt, out);
-    const Mask outran = real & (m.g.overlap > before);
-    for (std::size_t k = 0; k < lanes; ++k) out.outran[c + k] = lane(outran, k);
-    store_lanes(out.weight.data() + c, weights(c, side_i, side_j, kn, kt));
-    store_lanes(bound.overlap.data() + c, select(real, reach, Batch(INFINITY)));
-    set_directions(bound, c,
-                   {select(counts, m.g.n.x, zero), select(counts, m.g.n.y, zero), select(counts, m.g.n.z, zero)});
-    if (!HasCouples<Law> && yields_.empty()) return;
-    for (std::size_t k = 0; k < lanes; ++k) {
-      if (state_.contacts.is_padding(c + k)) continue;
-      if constexpr (HasCouples<Law>) {
-        add_couples(c + k, reach[k], out);
-        const Spring& s = out.network.springs[c + k];
-        set_direction(bound, c + k, acts(s) ? s.n : Vec3{});
-      } else {
-        Spring& s = out.network.springs[c + k];
-        s.normal *= give(c + k), s.tangential *= give(c + k);
-      }
-    }
+    const Eight e = take(c, bound);
+    store(c, e, out);
+    const Batch old = options_.looked.empty() ? Batch(0.0) : load_lanes(options_.looked.data() + c);
+    store_lanes(out.weight.data() + c, options_.looked.empty() ? e.weight : select(old > Batch(0.0), old, Batch(1.0)));
+    if constexpr (HasCouples<Law>)
+      for (std::size_t k = 0; k < lanes; ++k)
+        if (!state_.contacts.is_padding(c + k)) set_couples(c + k, e.couples[k], out);
+  }
+  void press_wall(std::size_t w, StandingBound& bound, Pressed& out) const {
+    const WallSpring found = take_wall(w, bound);
+    const std::size_t at = state_.contacts.size() + w;
+    const Spring layout = out.network.springs[at];
+    out.network.springs[at] = found.spring;
+    out.network.springs[at].i = layout.i, out.network.springs[at].j = layout.j;
+    out.motion[at] = {found.counted.reach, direction_error, found.turning};
+    set_couples(at, found.counted, out);
   }
 
-  void press_wall(std::size_t w, StandingBound& bound, Pressed& out) const {
-    const auto m = met_wall(w);
-    const double reach = allowed(wall_pair(w), m, rows_[state_.wall_contacts[w].grain].x, bound.wall_overlap[w]);
-    const Counted c = counted_wall(w, m, reach);
-    const std::size_t at = state_.contacts.size() + w;
-    Spring& s = out.network.springs[at];
-    s.arm_i = m.g.arm_i, s.normal = c.normal, s.tangential = c.tangential, s.n = m.g.n;
-    out.motion[at] = {c.reach, direction_error, m.approach.turning * options_.time};
-    set_couples(at, c, out);
-    out.outran[at] = m.g.overlap > std::max(bound.wall_overlap[w], 0.0);
-    bound.wall_overlap[w] = c.reach, bound.wall_direction[w] = acts(s) ? m.g.n : Vec3{};
+  /// Eight pairs, into the sums of their grains.
+  void add(std::size_t c, StandingBound& bound, Look& out) const {
+    const Eight e = take(c, bound);
+    const Batch zero(0.0), one(1.0);
+    for (std::size_t k = 0; k < lanes; ++k) out.outran[c + k] = lane(e.outran, k);
+    const Mask counts = (e.kn > zero) | (e.kt > zero);
+    store_lanes(out.weight.data() + c, select(counts, e.weight, zero));
+    if (!any(counts)) return;
+    const EightContacts contacts = taken_in(e, counts);
+    const Mask split = (e.most_i > zero) & (e.most_j > zero);
+    const Batch w_i = select(split, one + e.weight, one), w_j = select(split, one + one / e.weight, one);
+    const Index *i = state_.contacts.i.data() + c, *j = state_.contacts.j.data() + c,
+                *target = out.schedule.target.data() + c;
+    for (std::size_t k = 0; k < lanes; ++k) {
+      if (!lane(counts, k)) continue;
+      if (i[k] == j[k]) {
+        add_own_image(out.rows[i[k]], e, k);
+        continue;
+      }
+      add_contact(out.rows[i[k]], contacts, k, w_i[k], -e.m.g.arm_i[k]);
+      add_contact(out.rows[target[k]], contacts, k, w_j[k], e.m.g.arm_j[k]);
+      if constexpr (HasCouples<Law>)
+        for (const Index g : {i[k], target[k]})
+          add_couples(out.rows[g], {e.m.g.n.x[k], e.m.g.n.y[k], e.m.g.n.z[k]}, e.couples[k], e.turning[k]);
+    }
+  }
+  void add_wall(std::size_t w, StandingBound& bound, Look& out) const {
+    const WallSpring found = take_wall(w, bound);
+    const Spring& s = found.spring;
+    out.outran[state_.contacts.size() + w] = found.outran;
+    if (!acts(s) && found.counted.rolling == 0 && found.counted.twisting == 0) return;
+    GrainSums& row = out.rows[state_.wall_contacts[w].grain];
+    add_side(row.block, s, {}, 1);
+    const double stretch = std::abs(s.normal - s.tangential);
+    row.play += Double8{stretch, s.tangential * found.counted.reach, stretch * found.turning,
+                        s.tangential * found.turning, 0, 0, 0, 0};
+    add_couples(row, s.n, found.counted, found.turning);
   }
 
   /// Adds the contact if it may be beyond what it is allowed.
@@ -152,6 +162,108 @@ class Presser {
   using Pair = typename Law::template Pair<S>;
   template <class S>
   using Constants = typename Law::template Constants<S>;
+
+  struct NoCouples {};
+  /// Eight pairs as they may be.
+  struct Eight {
+    Met<Batch> m;
+    Batch reach, kn, kt, weight, turning;
+    Batch most_i, most_j;  ///< what a stiffness of 1 adds to either grain at most: 0 for one that cannot move
+    Mask outran;
+    [[no_unique_address]] std::conditional_t<HasCouples<Law>, std::array<Counted, lanes>, NoCouples> couples;
+  };
+  struct WallSpring {
+    Spring spring;
+    Counted counted;
+    double turning;
+    bool outran;
+  };
+
+  /// Sets what they are allowed.
+  Eight take(std::size_t c, StandingBound& bound) const {
+    const Index *i = state_.contacts.i.data() + c, *j = state_.contacts.j.data() + c;
+    const Batch zero(0.0);
+    Eight e;
+    e.m = met<Batch>(c);
+    const Columns<Batch> side_i = load_rows<Batch>(rows_.data(), i), side_j = load_rows<Batch>(rows_.data(), j);
+    const auto pair = this->pair<Batch>(c, e.m);
+    const Mask real = e.m.distance > Batch(1e-140);  // padding has no length
+    const Batch before = select(real, max(load_lanes(bound.overlap.data() + c), zero), zero);
+    e.reach = before;
+    if (options_.looked.empty()) e.reach = select(real, allowed(pair, e.m, max(side_i.x, side_j.x), before), zero);
+    const NormalResponse<Batch> at = response(pair, e.reach);
+    const Mask counts = e.reach > zero;
+    e.kn = select(counts, damped(at.stiffness, e.m.inverse_mass, damping_.normal_ratio), zero);
+    e.kt = select(counts, damped(at.tangential, e.m.inverse_mass, damping_.shear_ratio), zero);
+    e.weight = weights(c, side_i, side_j, e.kn, e.kt);
+    e.most_i = side_i.w, e.most_j = side_j.w;
+    e.turning = e.m.approach.turning * Batch(options_.time);
+    e.outran = real & (e.m.g.overlap > before);
+    if (HasCouples<Law> || !yields_.empty()) correct(c, e);
+    const Mask acts = (e.kn > zero) | (e.kt > zero);
+    store_lanes(bound.overlap.data() + c, select(real, e.reach, Batch(INFINITY)));
+    const Vec<Batch>& n = e.m.g.n;
+    set_directions(bound, c, {select(acts, n.x, zero), select(acts, n.y, zero), select(acts, n.z, zero)});
+    return e;
+  }
+  /// What bonds, couples and bodies that yield make of eight pairs.
+  void correct(std::size_t c, Eight& e) const {
+    for (std::size_t k = 0; k < lanes; ++k) {
+      if constexpr (HasCouples<Law>) {
+        e.couples[k] = {};
+        if (state_.contacts.is_padding(c + k)) continue;
+        e.couples[k] = counted(c + k, met<double>(c + k), e.reach[k]);
+        e.kn.v[k] = e.couples[k].normal, e.kt.v[k] = e.couples[k].tangential;
+      } else if (!state_.contacts.is_padding(c + k)) {
+        e.kn.v[k] *= give(c + k), e.kt.v[k] *= give(c + k);
+      }
+    }
+  }
+  WallSpring take_wall(std::size_t w, StandingBound& bound) const {
+    const auto m = met_wall(w);
+    const double before = bound.wall_overlap[w];
+    const double reach = options_.looked.empty()
+                             ? allowed(wall_pair(w), m, rows_[state_.wall_contacts[w].grain].x, before)
+                             : before;
+    WallSpring found;
+    found.counted = counted_wall(w, m, reach);
+    found.turning = m.approach.turning * options_.time, found.outran = m.g.overlap > std::max(before, 0.0);
+    Spring& s = found.spring;
+    s.arm_i = m.g.arm_i, s.normal = found.counted.normal, s.tangential = found.counted.tangential, s.n = m.g.n;
+    bound.wall_overlap[w] = found.counted.reach, bound.wall_direction[w] = acts(s) ? m.g.n : Vec3{};
+    return found;
+  }
+
+  EG_INLINE static EightContacts taken_in(const Eight& e, Mask counts) {
+    const Batch zero(0.0), stretch = e.kn - e.kt, both = abs(stretch);
+    const Batch x = select(counts, e.m.g.n.x, zero), y = select(counts, e.m.g.n.y, zero),
+                z = select(counts, e.m.g.n.z, zero);
+    const Batch xx = x * x, yy = y * y, zz = z * z, yz = y * z, xz = x * z, xy = x * y;
+    EightContacts out;
+    transpose_columns({stretch * xx, stretch * yy, stretch * zz, stretch * yz},
+                      {stretch * xz, stretch * xy, e.kt, e.kt * x}, out.first);
+    transpose_columns({e.kt * xx, e.kt * yy, e.kt * zz, e.kt * yz}, {e.kt * xz, e.kt * xy, e.kt * y, e.kt * z},
+                      out.second);
+    transpose_columns({both, e.kt * e.reach, both * e.turning, e.kt * e.turning}, out.play);
+    return out;
+  }
+  /// A pair of a grain and its own image only turns: its ends move alike.
+  static void add_own_image(GrainSums& row, const Eight& e, std::size_t k) {
+    Spring s;
+    s.arm_i = e.m.g.arm_i[k], s.arm_j = e.m.g.arm_j[k], s.tangential = e.kt[k];
+    s.n = {e.m.g.n.x[k], e.m.g.n.y[k], e.m.g.n.z[k]};
+    add_side(row.block, s, {.own_image = true}, 1);
+    const double turn = 4 * e.kt[k] * e.m.radius_i[k] * e.m.radius_i[k];
+    row.play += Double8{0, 4 * e.kt[k] * e.reach[k], 0, 0, turn, turn * e.turning[k], 0, 0};
+  }
+  static void add_couples(GrainSums& row, const Vec3& n, const Counted& c, double turning) {
+    if (c.twisting == 0 && c.rolling == 0) return;
+    Spring s;
+    s.normal = c.twisting, s.tangential = c.rolling, s.n = n;
+    add_couple(row.block, s, 1);
+    const double k = std::abs(c.twisting - c.rolling);
+    row.play += Double8{0, 0, 0, 0, k, k * turning, 0, 0};
+  }
 
   template <class S>
   Met<S> met(std::size_t c) const {
@@ -267,13 +379,12 @@ class Presser {
     return select(old > Batch(0.0), sqrt(old * now), centred(i.z, j.z));
   }
 
-  void store(std::size_t c, const Met<Batch>& m, Batch reach, Batch kn, Batch kt, Pressed& out) const {
-    const Batch turning = m.approach.turning * Batch(options_.time);
+  static void store(std::size_t c, const Eight& e, Pressed& out) {
     for (std::size_t k = 0; k < lanes; ++k) {
       Spring& s = out.network.springs[c + k];
-      s.arm_i = m.g.arm_i[k], s.arm_j = m.g.arm_j[k], s.normal = kn[k], s.tangential = kt[k];
-      s.n = {m.g.n.x[k], m.g.n.y[k], m.g.n.z[k]};
-      out.motion[c + k] = {reach[k], direction_error, turning[k]};
+      s.arm_i = e.m.g.arm_i[k], s.arm_j = e.m.g.arm_j[k], s.normal = e.kn[k], s.tangential = e.kt[k];
+      s.n = {e.m.g.n.x[k], e.m.g.n.y[k], e.m.g.n.z[k]};
+      out.motion[c + k] = {e.reach[k], direction_error, e.turning[k]};
     }
   }
 
@@ -282,12 +393,6 @@ class Presser {
     return !yields_.empty() && (yields_[state_.contacts.i[c]] | yields_[state_.contacts.j[c]]) ? yielding : 1;
   }
 
-  /// A contact of a law with couples, which may be bonded.
-  void add_couples(std::size_t c, double reach, Pressed& out) const {
-    const Counted k = counted(c, met<double>(c), reach);
-    out.network.springs[c].normal = k.normal, out.network.springs[c].tangential = k.tangential;
-    set_couples(c, k, out);
-  }
   void set_couples(std::size_t at, const Counted& c, Pressed& out) const {
     const Spring& s = out.network.springs[at];
     if (out.couples == 0 || s.i == s.j) return;
@@ -381,7 +486,46 @@ void lay_out(const Scene& scene, const State& state, Pressed& out) {
   out.couples = couples ? contacts : 0;
   out.weight.assign(springs.size(), 1.0);
   out.motion.assign(springs.size(), {});
-  out.outran.assign(springs.size(), 0);
+}
+
+void lay_out(const State& state, Look& out) {
+  const auto& list = state.contacts;
+  out.weight.resize(list.size());
+  out.outran.assign(list.size() + state.wall_contacts.size(), 0);
+  out.terms = 2 * out.outran.size();
+  if (list.chunk_begin.empty())
+    out.schedule = {};
+  else
+    make_schedule(out.schedule, state.grains.size(), Contacts::chunk, list.j, list.chunk_begin);
+  out.rows.assign(std::max(out.schedule.rows(), state.grains.size()), {});
+  out.scheduled = true;
+}
+
+void look_at_all(const Scene& scene, State& state, const PressOptions& options, Look& out) {
+  StandingBound& bound = state.policy.bound;
+  const auto& list = state.contacts;
+  const Schedule& schedule = out.schedule;
+  const auto grains = static_cast<std::ptrdiff_t>(state.grains.size());
+  constexpr auto chunk = static_cast<std::ptrdiff_t>(Contacts::chunk);
+  if (schedule.chunks() == 0) std::ranges::fill(out.rows, GrainSums{});
+  with_law(scene.contact.law, [&]<class Law>(Law) {
+    const Presser<Law> presser(scene, state, options);
+    const auto pairs = [&](std::size_t k) {
+      const auto first = static_cast<std::ptrdiff_t>(k) * chunk;
+      std::fill(out.rows.begin() + first, out.rows.begin() + std::min(grains, first + chunk), GrainSums{});
+      for (std::size_t c = list.chunk_begin[k]; c < list.chunk_begin[k + 1]; c += lanes) presser.add(c, bound, out);
+    };
+    const auto gather = [&](std::size_t k) {
+      for (Index e = schedule.gather_begin[k]; e < schedule.gather_begin[k + 1]; ++e) {
+        GrainSums &to = out.rows[schedule.gather_grain[e]], &from = out.rows[schedule.gather_row[e]];
+        to.block.first += from.block.first, to.block.second += from.block.second, to.play += from.play;
+        from = {};
+      }
+    };
+#pragma omp parallel if (schedule.chunks() >= Contacts::worth_threads)
+    if (schedule.chunks() > 0) run_chunks(schedule, pairs, gather);
+    for (std::size_t w = 0; w < state.wall_contacts.size(); ++w) presser.add_wall(w, bound, out);
+  });
 }
 
 void press_contacts(const Scene& scene, State& state, const PressOptions& options, Pressed& out) {

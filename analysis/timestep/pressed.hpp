@@ -4,13 +4,16 @@
 // room for the rest, so that a contact need not be looked at again for long.
 #include "assembly/damping.hpp"
 #include "state/gather.hpp"
-#include "timestep/play.hpp"
+#include "state/schedule.hpp"
+#include "timestep/grain_sums.hpp"
 
 namespace eg {
 
 struct PressOptions {
   double time = 0;   ///< until the next check [s]
   double slack = 0;  ///< by which every overlap may grow at least before it counts as outgrown [-]
+  /// Weights of pairs as a look at all contacts left them; what they are allowed then is as it left it, too.
+  std::span<const double> looked = {};
 };
 
 /// All listed contacts. Springs stand as in the lists, those that are not counted with no stiffness: pairs (padding
@@ -21,8 +24,24 @@ struct Pressed {
   std::size_t couples = 0;           ///< number of contacts, so where couples begin; 0: there are none
   std::vector<double> weight;        ///< t of every spring, > 0
   std::vector<SpringMotion> motion;  ///< of every spring
-  std::vector<std::uint8_t> outran;  ///< whether it overlaps by more than it was allowed so far
 };
+
+/// What a look at all contacts finds.
+struct Look {
+  std::vector<double> weight;        ///< t of every pair, 0 where it is not counted
+  std::vector<std::uint8_t> outran;  ///< pairs, then walls: whether one overlaps by more than it was allowed so far
+  std::size_t terms = 0;             ///< more than any of the sums below is made of
+  AlignedVector<GrainSums> rows;     ///< grain after grain, then what the schedule needs
+  Schedule schedule;                 ///< of the lists …
+  bool scheduled = false;            ///< … that are present
+  BlockRanges ranges{0};             ///< of grains, by those sums
+  std::vector<GrainPlay> plays;
+};
+/// For new lists.
+void lay_out(const State& state, Look& out);
+/// Takes all contacts for what they may be, which sets overlap and direction of state.policy.bound, and adds up what
+/// that means for each grain. There is a bound already.
+void look_at_all(const Scene& scene, State& state, const PressOptions& options, Look& out);
 
 /// The springs of the present lists, all without stiffness.
 void lay_out(const Scene& scene, const State& state, Pressed& out);

@@ -74,6 +74,14 @@ Block block_of(const Sides& sides, const std::vector<double>& t, Index grain) {
   });
 }
 
+void keep_grains(const BlockRanges& ranges, const std::vector<GrainPlay>& plays, StandingBound& bound) {
+  bound.grain.resize(plays.size()), bound.turning.resize(plays.size());
+  for (std::size_t g = 0; g < plays.size(); ++g) {
+    bound.grain[g] = std::min(ranges.high[g] + plays[g].counted, bound.value);
+    bound.turning[g] = plays[g].turn;
+  }
+}
+
 /// By how much all directions of a grain's contacts may be off.
 double turn_room(const StandingBound& bound, std::size_t i) {
   const double room = std::max(0.0, bound.value - bound.grain[i]);
@@ -102,7 +110,7 @@ void StandingBounds::remember(const State& state) {
   i_ = list.i, j_ = list.j, image_ = list.image, id_ = state.grains.id;
   walls_.clear();
   for (const auto& w : state.wall_contacts) walls_.push_back({w.wall, w.grain});
-  sides_.reset();
+  sides_.reset(), look_.scheduled = false;
 }
 
 bool StandingBounds::has_lists_of(const State& state) const {
@@ -114,23 +122,20 @@ bool StandingBounds::has_lists_of(const State& state) const {
          std::ranges::equal(state.wall_contacts, walls_, same);
 }
 
-void StandingBounds::press(State& state, double time, double slack) {
+void StandingBounds::press(State& state, const PressOptions& options) {
   if (!sides_) {
     lay_out(scene_, state, pressed_);
     sides_.emplace(pressed_.network);
   }
-  press_contacts(scene_, state, {time, slack}, pressed_);
+  press_contacts(scene_, state, options, pressed_);
   weights_.reset();
 }
 
-void StandingBounds::keep(StandingBound& bound, const ScalarWeights& weights, const std::vector<GrainPlay>& plays) {
+void StandingBounds::keep(StandingBound& bound, const ScalarWeights& weights,
+                          const std::vector<GrainPlay>& plays) const {
   for (std::size_t c = 0; c < bound.weight.size(); ++c)
     bound.weight[c] = acts(pressed_.network.springs[c]) ? weights.t[c] : 0.0;
-  bound.grain.resize(plays.size()), bound.turning.resize(plays.size());
-  for (std::size_t g = 0; g < plays.size(); ++g) {
-    bound.grain[g] = std::min(weights.ranges.high[g] + plays[g].counted, bound.value);
-    bound.turning[g] = plays[g].turn;
-  }
+  keep_grains(weights.ranges, plays, bound);
 }
 
 std::vector<Index> StandingBounds::beyond(const StandingBound& bound, const ScalarWeights& found,
@@ -144,23 +149,35 @@ std::vector<Index> StandingBounds::beyond(const StandingBound& bound, const Scal
   return grains;
 }
 
-bool StandingBounds::fits(State& state) {
+bool StandingBounds::fits(State& state, double time, double slack) {
   StandingBound& bound = state.policy.bound;
-  ScalarWeights found{pressed_.weight, BlockRanges(sides_->size())};
-  block_ranges(*sides_, found.t, all_grains(*sides_), found.ranges);
-  std::vector<GrainPlay> plays = plays_of(*sides_, found.t, pressed_.motion);
-  std::vector<Index> grains = beyond(bound, found, plays);
-  if (!grains.empty()) {
-    found = sweep_scalars(*sides_, {.most = 4, .target = tight * bound.value, .start = pressed_.weight});
-    plays = plays_of(*sides_, found.t, pressed_.motion);
-    grains = beyond(bound, found, plays);
+  if (!look_.scheduled) lay_out(state, look_);
+  weights_.reset();
+  look_at_all(scene_, state, {time, slack}, look_);
+  bound_grains(state, look_.rows, look_.terms, look_.ranges, look_.plays);
+  for (Index g = 0; g < look_.plays.size(); ++g) {
+    const double most = bound.value - std::max(look_.plays[g].counted, look_.plays[g].ahead);
+    if (!(look_.ranges.high[g] < most) && !block_is_below(block_of(state, g, look_.rows[g]), look_.terms, most))
+      return fits_by_sweeps(state, time, slack);
   }
+  keep_grains(look_.ranges, look_.plays, bound);
+  bound.weight.swap(look_.weight);
+  return true;
+}
+
+bool StandingBounds::fits_by_sweeps(State& state, double time, double slack) {
+  StandingBound& bound = state.policy.bound;
+  press(state, {time, slack, look_.weight});
+  ScalarWeights found = sweep_scalars(*sides_, {.most = 4, .target = tight * bound.value, .start = pressed_.weight});
+  const std::vector<GrainPlay> plays = plays_of(*sides_, found.t, pressed_.motion);
+  const std::vector<Index> grains = beyond(bound, found, plays);
   if (grains.empty()) {
     keep(bound, found, plays);
     return true;
   }
   for (const Index g : grains)
-    for (const Side& side : sides_->of(g)) outrun_ = outrun_ || pressed_.outran[side.spring];
+    for (const Side& side : sides_->of(g))
+      outrun_ = outrun_ || (side.spring < look_.outran.size() && look_.outran[side.spring]);
   weights_ = std::move(found);
   return false;
 }
@@ -170,7 +187,7 @@ double StandingBounds::renew(State& state, const RenewOptions& options) {
   bound.step = options.step;
   const bool warm = bound.value > 0 && (has_lists_of(state) || follow(state));
   if (!warm) remember(state), bound.value = 0;
-  if (options.afresh || !weights_) press(state, options.time, options.slack);
+  if (options.afresh || !weights_) press(state, {options.time, options.slack});
   ScalarWeights found = weights_ ? std::move(*weights_)
                         : warm   ? sweep_scalars(*sides_, {.most = 4, .start = pressed_.weight})
                                  : sweep_scalars(*sides_, {.most = 8});
@@ -308,9 +325,8 @@ StandingCheck StandingBounds::check(State& state, double time, double slack) {
   outrun_ = false;
   result.outgrown = pairs.size() + walls.size();
   if (allow_more(state, {pairs, walls}, time, slack)) return result;
-  press(state, time, slack);
   result.examined = state.grains.size();
-  result.stands = fits(state);
+  result.stands = fits(state, time, slack);
   result.outrun = outrun_ && !result.stands;
   return result;
 }

@@ -55,14 +55,17 @@ class StandingBounds {
   bool allow_more(State& state, const ContactSelection& selection, double time, double slack);
   /// Allows such a contact more, and adds what that may add to λmax(S_i) of its grains; whether they stay below.
   bool add_excess(State& state, const Beyond& contact) const;
-  /// Looks at all contacts.
-  void press(State& state, double time, double slack);
-  /// Whether all S_i are below the bound as all contacts may be; if so, the bound goes by that from now on.
-  bool fits(State& state);
+  /// Makes the network of all contacts as they may be.
+  void press(State& state, const PressOptions& options);
+  /// Looks at all contacts: whether all S_i are below the bound as these may be; if so, the bound goes by that from now
+  /// on.
+  bool fits(State& state, double time, double slack);
+  /// The same by other weights, once a look has found grains that do not fit.
+  bool fits_by_sweeps(State& state, double time, double slack);
   /// Grains that are not proved below the bound.
   std::vector<Index> beyond(const StandingBound& bound, const ScalarWeights& found,
                             const std::vector<GrainPlay>& plays) const;
-  void keep(StandingBound& bound, const ScalarWeights& weights, const std::vector<GrainPlay>& plays);
+  void keep(StandingBound& bound, const ScalarWeights& weights, const std::vector<GrainPlay>& plays) const;
   bool has_lists_of(const State& state) const;
   /// The contacts of these grains as they are, springs of the damped network without couples.
   Network around(const State& state, const std::vector<Index>& grains) const;
@@ -73,6 +76,7 @@ class StandingBounds {
   std::vector<std::array<Index, 2>> walls_;  ///< wall and grain
   std::vector<double> turn_;                 ///< leave of each grain in the check under way
   std::vector<std::size_t> fresh_;           ///< pairs that follow() met for the first time
+  Look look_;                                ///< of the present lists once scheduled
   Pressed pressed_;                          ///< of the present lists once sides_ is set
   std::optional<Sides> sides_;
   std::optional<ScalarWeights> weights_;  ///< of a check that failed …

@@ -2,6 +2,8 @@
 // packing.
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "assembly/linearise.hpp"
 #include "contact/laws.hpp"
 #include "dynamics/engine.hpp"
@@ -74,6 +76,45 @@ TEST_P(PressedBy, WhatIsAllowedCoversWhereSlowMotionLeads) {
     EXPECT_LE(p.geometry.overlap, state.policy.bound.overlap[p.entry] * (1 + 1e-12));
   });
   EXPECT_GT(touching, 10);
+}
+
+// What a look adds up grain by grain is what the springs add up to, whatever the weights.
+TEST_P(PressedBy, ALookAddsUpWhatTheNetworkAddsUp) {
+  const Scene scene = test::scene_of(GetParam());
+  State state = touching(scene, 5);
+  Random random(5);
+  for (auto& v : state.grains.velocity) v.set({random.normal(), random.normal(), random.normal()});
+  StandingBound& bound = state.policy.bound;
+  bound = {};
+  bound.step = 1;
+  const PressOptions options{.time = 1e-8, .slack = 0.1};
+  Pressed pressed;
+  lay_out(scene, state, pressed);
+  press_contacts(scene, state, options, pressed);
+  bound.value = 1e16, bound.grain.assign(state.grains.size(), 0.5e16), bound.turning.assign(state.grains.size(), 0.0);
+  Look look;
+  lay_out(state, look);
+  look_at_all(scene, state, options, look);
+  bound_grains(state, look.rows, look.terms, look.ranges, look.plays);
+  press_contacts(scene, state, {options.time, options.slack, look.weight}, pressed);
+  const Sides sides(pressed.network);
+  const std::vector<GrainPlay> plays = plays_of(sides, pressed.weight, pressed.motion);
+  BlockRanges ranges(sides.size());
+  std::vector<Index> all(sides.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  block_ranges(sides, pressed.weight, all, ranges);
+  int loaded = 0;
+  for (Index g = 0; g < sides.size(); ++g) {
+    loaded += ranges.high[g] > 0;
+    EXPECT_NEAR(look.ranges.high[g], ranges.high[g], 1e-9 * ranges.high[g]);
+    EXPECT_NEAR(look.ranges.low[g], ranges.low[g], 1e-9 * ranges.low[g]);
+    EXPECT_GE(look.plays[g].turn, plays[g].turn * (1 - 1e-12));
+    EXPECT_GE(look.plays[g].counted, plays[g].counted * (1 - 1e-12));
+    EXPECT_GE(look.plays[g].ahead, plays[g].ahead * (1 - 1e-12));
+    EXPECT_LE(look.plays[g].turn, plays[g].turn * 1.3);
+    EXPECT_LE(look.plays[g].ahead, plays[g].ahead * 1.3);
+  }
+  EXPECT_GT(loaded, 10);
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, PressedBy, ::testing::ValuesIn(law_names()), [](const auto& info) {
