@@ -52,4 +52,14 @@ void block_ranges(const Sides& sides, std::span<const double> t, std::span<const
   }
 }
 
+Block scalar_block(const Sides& sides, std::span<const double> t, Index grain) {
+  return sides.block(grain, [&](const Side& side) -> Eigen::Matrix3d {
+    const Spring& s = sides.network().springs[side.spring];
+    double w = 1;
+    if (side.role != Side::Role::alone) w += side.role == Side::Role::first ? t[side.spring] : 1 / t[side.spring];
+    const Eigen::Vector3d n(s.n.x, s.n.y, s.n.z);
+    return w * (s.tangential * Eigen::Matrix3d::Identity() + (s.normal - s.tangential) * n * n.transpose());
+  });
+}
+
 }  // namespace eg

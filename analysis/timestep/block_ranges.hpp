@@ -19,4 +19,7 @@ struct BlockRanges {
 /// low = tr S^17 / tr S^16 and high = (tr S^32)^(1/32): any matrix of six eigenvalues has λmax between them.
 void block_ranges(const Sides& sides, std::span<const double> t, std::span<const Index> grains, BlockRanges& ranges);
 
+/// S_i of one grain.
+Block scalar_block(const Sides& sides, std::span<const double> t, Index grain);
+
 }  // namespace eg

@@ -135,6 +135,18 @@ class Presser {
     add_couples(row, s.n, found.counted, found.turning);
   }
 
+  /// Adds the contact if it counts for anything.
+  void count(std::size_t c, std::vector<CountedContact>& found) const {
+    const auto m = met<double>(c);
+    add_counted({state_.contacts.i[c], state_.contacts.j[c], c, {}, {}, counted(c, m, bound_.overlap[c])}, m,
+                counted_direction(bound_, c), found);
+  }
+  void count_wall(std::size_t w, std::vector<CountedContact>& found) const {
+    const auto m = met_wall(w);
+    add_counted({state_.wall_contacts[w].grain, no_index, w, {}, {}, counted_wall(w, m, bound_.wall_overlap[w])}, m,
+                bound_.wall_direction[w], found);
+  }
+
   /// Adds the contact if it may be beyond what it is allowed.
   void look(std::size_t c, std::span<const double> turn, std::vector<Beyond>& found) const {
     const Index i = state_.contacts.i[c], j = state_.contacts.j[c];
@@ -360,6 +372,14 @@ class Presser {
     return select(grown + S(near) * usual > S(0.0), max(reach, S(0.0)), S(0.0));
   }
 
+  void add_counted(CountedContact c, const Met<double>& m, const Vec3& from, std::vector<CountedContact>& found) const {
+    Spring& s = c.spring;
+    s.i = c.i, s.j = c.j, s.arm_i = m.g.arm_i, s.arm_j = m.g.arm_j, s.n = m.g.n;
+    s.normal = c.counted.normal, s.tangential = c.counted.tangential;
+    if (!acts(s)) return;
+    c.motion = {c.counted.reach, turned(m, from), m.approach.turning * options_.time};
+    found.push_back(c);
+  }
   static double turned(const Met<double>& m, const Vec3& from) {
     return norm(from) > 0 ? norm(m.g.n - from) + direction_error : 0.0;
   }
@@ -557,6 +577,17 @@ std::vector<Beyond> look_beyond(const Scene& scene, const State& state, const Co
     const Presser<Law> presser(scene, state, options);
     for (const std::size_t c : selection.grains) presser.look(c, turn, found);
     for (const std::size_t w : selection.walls) presser.look_wall(w, turn, found);
+  });
+  return found;
+}
+
+std::vector<CountedContact> counted_contacts(const Scene& scene, const State& state, const ContactSelection& selection,
+                                             double time) {
+  std::vector<CountedContact> found;
+  with_law(scene.contact.law, [&]<class Law>(Law) {
+    const Presser<Law> presser(scene, state, {time, 0});
+    for (const std::size_t c : selection.grains) presser.count(c, found);
+    for (const std::size_t w : selection.walls) presser.count_wall(w, found);
   });
   return found;
 }

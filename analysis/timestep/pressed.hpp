@@ -68,6 +68,18 @@ struct Beyond {
 std::vector<Beyond> look_beyond(const Scene& scene, const State& state, const ContactSelection& selection,
                                 std::span<const double> turn, const PressOptions& options);
 
+/// A contact as it is counted.
+struct CountedContact {
+  Index i, j;         ///< j == no_index: a wall
+  std::size_t entry;  ///< of its list
+  Spring spring;      ///< of the same grains, with its present direction and arms
+  SpringMotion motion;
+  Counted counted;
+};
+/// Those of the contacts that count for anything, at what they are allowed.
+std::vector<CountedContact> counted_contacts(const Scene& scene, const State& state, const ContactSelection& selection,
+                                             double time);
+
 /// The weight that leaves both grains of a pair the most room: minimises −ln(σ − S_i) − ln(σ − S_j) in the share of the
 /// pair. `a`: what the pair adds to each S at weight 1; `room`: σ − S of each.
 double centred_weight(double a_i, double room_i, double a_j, double room_j);

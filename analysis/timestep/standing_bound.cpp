@@ -6,6 +6,7 @@
 
 #include "assembly/linearise.hpp"
 #include "state/damping.hpp"
+#include "timestep/mend.hpp"
 #include "timestep/outgrown.hpp"
 
 namespace eg {
@@ -13,6 +14,7 @@ namespace {
 
 constexpr double straight = 2;         // no two unit vectors are further apart
 constexpr std::size_t few = 16;        // one in so many contacts beyond what it is allowed: taken one by one
+constexpr std::size_t patched = 32;    // one in so many grains that do not fit, or 16: mended by themselves
 constexpr std::size_t looked_at = 64;  // stiffest grains, for a lower bound
 constexpr double tight = 0.97;         // of the bound: from here on weights are improved in a check
 
@@ -63,17 +65,6 @@ double weight_of(const State& state, const Beyond& pair) {
   return centred_weight(velocity[pair.i].w, room(pair.i), velocity[pair.j].w, room(pair.j));
 }
 
-/// S_i of one grain.
-Block block_of(const Sides& sides, const std::vector<double>& t, Index grain) {
-  return sides.block(grain, [&](const Side& side) -> Eigen::Matrix3d {
-    const Spring& s = sides.network().springs[side.spring];
-    double w = 1;
-    if (side.role != Side::Role::alone) w += side.role == Side::Role::first ? t[side.spring] : 1 / t[side.spring];
-    const Eigen::Vector3d n(s.n.x, s.n.y, s.n.z);
-    return w * (s.tangential * Eigen::Matrix3d::Identity() + (s.normal - s.tangential) * n * n.transpose());
-  });
-}
-
 void keep_grains(const BlockRanges& ranges, const std::vector<GrainPlay>& plays, StandingBound& bound) {
   bound.grain.resize(plays.size()), bound.turning.resize(plays.size());
   for (std::size_t g = 0; g < plays.size(); ++g) {
@@ -99,7 +90,7 @@ double largest_block(const Sides& sides, const std::vector<double>& t, const Blo
   double most = largest(ranges.low);
   for (Index g = 0; g < sides.size(); ++g)
     if (ranges.high[g] > most)
-      most = std::max(most, std::min(ranges.high[g], block_upper_bound(block_of(sides, t, g), sides.of(g).size())));
+      most = std::max(most, std::min(ranges.high[g], block_upper_bound(scalar_block(sides, t, g), sides.of(g).size())));
   return most;
 }
 
@@ -143,7 +134,7 @@ std::vector<Index> StandingBounds::beyond(const StandingBound& bound, const Scal
   std::vector<Index> grains;
   for (Index g = 0; g < plays.size(); ++g) {
     const double most = bound.value - std::max(plays[g].counted, plays[g].ahead);
-    if (!(found.ranges.high[g] < most) && !block_is_below(block_of(*sides_, found.t, g), sides_->of(g).size(), most))
+    if (!(found.ranges.high[g] < most) && !block_is_below(scalar_block(*sides_, found.t, g), sides_->of(g).size(), most))
       grains.push_back(g);
   }
   return grains;
@@ -155,14 +146,15 @@ bool StandingBounds::fits(State& state, double time, double slack) {
   weights_.reset();
   look_at_all(scene_, state, {time, slack}, look_);
   bound_grains(state, look_.rows, look_.terms, look_.ranges, look_.plays);
+  std::vector<Index> open;
   for (Index g = 0; g < look_.plays.size(); ++g) {
     const double most = bound.value - std::max(look_.plays[g].counted, look_.plays[g].ahead);
     if (!(look_.ranges.high[g] < most) && !block_is_below(block_of(state, g, look_.rows[g]), look_.terms, most))
-      return fits_by_sweeps(state, time, slack);
+      open.push_back(g);
   }
   keep_grains(look_.ranges, look_.plays, bound);
-  bound.weight.swap(look_.weight);
-  return true;
+  bound.weight = look_.weight;
+  return mend_few(state, open, time) || fits_by_sweeps(state, time, slack);
 }
 
 bool StandingBounds::fits_by_sweeps(State& state, double time, double slack) {
@@ -273,7 +265,7 @@ bool StandingBounds::follow(State& state) {
   return true;
 }
 
-bool StandingBounds::add_excess(State& state, const Beyond& contact) const {
+bool StandingBounds::add_excess(State& state, const Beyond& contact, std::vector<Index>& open) const {
   const auto& g = state.grains;
   StandingBound& bound = state.policy.bound;
   const Counted &now = contact.now, &before = contact.before;
@@ -290,7 +282,9 @@ bool StandingBounds::add_excess(State& state, const Beyond& contact) const {
     bound.grain[i] += (w * most_added(kn, kt, inertia) + couple * inertia.inverse_inertia) * sum_rounding +
                       earlier.turn * contact.turned + more(later.arm, earlier.arm);
     bound.turning[i] += more(later.turn, earlier.turn);
-    return bound.grain[i] + bound.turning[i] * std::max(turn_[i], contact.turning) <= bound.value;
+    const bool below = bound.grain[i] + bound.turning[i] * std::max(turn_[i], contact.turning) <= bound.value;
+    if (!below) open.push_back(i);
+    return below;
   };
   if (contact.j == no_index) {
     bound.wall_overlap[contact.entry] = now.reach, bound.wall_direction[contact.entry] = contact.n;
@@ -308,12 +302,19 @@ bool StandingBounds::allow_more(State& state, const ContactSelection& selection,
   const std::size_t asked = selection.grains.size() + selection.walls.size();
   if (asked == 0) return true;
   if (asked * few > state.contacts.size() + state.wall_contacts.size()) return false;
-  bool below = true;
+  std::vector<Index> open;
   for (const Beyond& b : look_beyond(scene_, state, selection, turn_, {time, slack})) {
-    if (add_excess(state, b)) continue;
-    below = false, outrun_ = outrun_ || b.outran;
+    if (add_excess(state, b, open)) continue;
+    outrun_ = outrun_ || b.outran;
   }
-  return below;
+  return mend_few(state, open, time);
+}
+
+bool StandingBounds::mend_few(State& state, std::vector<Index>& grains, double time) const {
+  if (grains.empty()) return true;
+  std::ranges::sort(grains);
+  grains.erase(std::unique(grains.begin(), grains.end()), grains.end());
+  return grains.size() * patched <= state.grains.size() + patched * 16 && mend(scene_, state, grains, time);
 }
 
 StandingCheck StandingBounds::check(State& state, double time, double slack) {

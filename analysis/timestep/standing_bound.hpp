@@ -53,8 +53,11 @@ class StandingBounds {
  private:
   /// Allows those of a few contacts more that may need it; false when there are too many, or a grain has no room left.
   bool allow_more(State& state, const ContactSelection& selection, double time, double slack);
-  /// Allows such a contact more, and adds what that may add to λmax(S_i) of its grains; whether they stay below.
-  bool add_excess(State& state, const Beyond& contact) const;
+  /// Allows such a contact more, and adds what that may add to λmax(S_i) of its grains; whether they stay below. Those
+  /// that do not are added to `open`.
+  bool add_excess(State& state, const Beyond& contact, std::vector<Index>& open) const;
+  /// Works out these grains by themselves (mend.hpp), unless there are too many.
+  bool mend_few(State& state, std::vector<Index>& grains, double time) const;
   /// Makes the network of all contacts as they may be.
   void press(State& state, const PressOptions& options);
   /// Looks at all contacts: whether all S_i are below the bound as these may be; if so, the bound goes by that from now
