@@ -10,33 +10,30 @@
 namespace eg {
 namespace {
 
-constexpr int most_sweeps = 6;
 constexpr double widest = 1000;  // weight
 
 /// Grains that do not fit and those that they touch, with all contacts of either.
 class Patch {
  public:
-  Patch(const Scene& scene, const State& state, const std::vector<Index>& grains, double time)
+  Patch(const Scene& scene, const State& state, const std::vector<Index>& grains, double time, bool neighbours)
       : state_(state), local_(state.grains.size(), no_index) {
     for (const Index g : grains) take_in(g);
-    const auto& list = state.contacts;
-    const auto counts = [&](std::size_t c) { return state.policy.bound.weight[c] > 0; };
-    const std::vector<Index> first = local_;
-    for (std::size_t c = 0; c < list.size(); ++c)
-      if (counts(c) && (first[list.i[c]] != no_index || first[list.j[c]] != no_index))
-        take_in(list.i[c]), take_in(list.j[c]);
     inner_ = grains_.size();
-    std::vector<std::size_t> pairs, walls;
-    for (std::size_t c = 0; c < list.size(); ++c)
-      if (!list.is_padding(c) && (is_inner(list.i[c]) || is_inner(list.j[c]))) pairs.push_back(c);
+    std::vector<std::size_t> pairs = pairs_of_inner(), walls;
+    if (neighbours) {
+      for (const std::size_t c : pairs)
+        if (state.policy.bound.weight[c] > 0) take_in(state.contacts.i[c]), take_in(state.contacts.j[c]);
+      inner_ = grains_.size();
+      pairs = pairs_of_inner();
+    }
     for (std::size_t w = 0; w < state.wall_contacts.size(); ++w)
       if (is_inner(state.wall_contacts[w].grain)) walls.push_back(w);
     contacts_ = counted_contacts(scene, state, {pairs, walls}, time);
     make_network();
   }
 
-  /// Whether there are weights by which all inner grains stay below the bound; takes the best time of some sweeps.
-  bool fits() {
+  /// Whether all inner grains stay below the bound, by the weights that they have or what so many sweeps make of them.
+  bool fits(int most_sweeps) {
     const StandingBound& bound = state_.policy.bound;
     const Sides sides(network_);
     ranges_ = BlockRanges(sides.size());
@@ -49,7 +46,8 @@ class Patch {
       bool all = true;
       for (const Index g : inner) {
         const double most = bound.value - std::max(plays_[g].counted, plays_[g].ahead);
-        if (ranges_.high[g] < most || block_is_below(scalar_block(sides, weight_, g), sides.of(g).size(), most)) continue;
+        if (ranges_.high[g] < most || block_is_below(scalar_block(sides, weight_, g), sides.of(g).size(), most))
+          continue;
         open[g] = true, all = false;
       }
       if (all || sweep == most_sweeps) return all;
@@ -79,6 +77,15 @@ class Patch {
   }
 
  private:
+  std::vector<std::size_t> pairs_of_inner() const {
+    const auto& list = state_.contacts;
+    std::vector<std::uint8_t> marked(local_.size());
+    for (std::size_t g = 0; g < local_.size(); ++g) marked[g] = local_[g] < inner_;
+    std::vector<std::size_t> pairs;
+    for (std::size_t c = 0; c < list.size(); ++c)
+      if ((marked[list.i[c]] | marked[list.j[c]]) && !list.is_padding(c)) pairs.push_back(c);
+    return pairs;
+  }
   bool is_inner(Index g) const { return local_[g] < inner_; }
   void take_in(Index g) {
     if (local_[g] != no_index) return;
@@ -135,10 +142,13 @@ class Patch {
 }  // namespace
 
 bool mend(const Scene& scene, State& state, const std::vector<Index>& grains, double time) {
-  Patch patch(scene, state, grains, time);
-  if (!patch.fits()) return false;
-  patch.keep(state.policy.bound);
-  return true;
+  for (const bool neighbours : {false, true}) {
+    Patch patch(scene, state, grains, time, neighbours);
+    if (!patch.fits(neighbours ? 6 : 0)) continue;
+    patch.keep(state.policy.bound);
+    return true;
+  }
+  return false;
 }
 
 }  // namespace eg

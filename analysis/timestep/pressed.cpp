@@ -17,11 +17,11 @@
 namespace eg {
 namespace {
 
-constexpr double most_slack = 2;          // by which an overlap may grow beyond what is foreseen, at most [-]
-constexpr double up_to = 0.8;             // of the bound: what contacts are given of the room of their grains
-constexpr double near = 0.5;              // of that, for pairs that do not touch yet, by which they count before they do
-constexpr double widest = 100;            // weight
-constexpr double nearest = 0.02;          // room of a grain below the bound, as the weights see it [of the bound]
+constexpr double most_slack = 2;  // by which an overlap may grow beyond what is foreseen, at most [-]
+constexpr double up_to = 0.8;     // of the bound: what contacts are given of the room of their grains
+constexpr double near = 0.5;      // of that, for pairs that do not touch yet, by which they count before they do
+constexpr double widest = 100;    // weight
+constexpr double nearest = 0.02;  // room of a grain below the bound, as the weights see it [of the bound]
 constexpr std::size_t lanes = Contacts::lanes;
 
 template <class S>
@@ -51,11 +51,13 @@ struct Met {
   Approach<S> approach;
 };
 
+enum class Scope { all, some };  ///< of the contacts
+
 /// What is asked about all contacts alike.
 template <class Law>
 class Presser {
  public:
-  Presser(const Scene& scene, const State& state, const PressOptions& options)
+  Presser(const Scene& scene, const State& state, const PressOptions& options, Scope scope, double usual)
       : state_(state),
         bound_(state.policy.bound),
         options_(options),
@@ -65,8 +67,8 @@ class Presser {
         constants_(pair_constants<Law>(scene.materials, friction_in_force(scene, state), scene.dimension)),
         damping_(damping_in_force(scene, state)),
         yields_(glued_that_yield(state)),
-        usual_(usual_overlap(bound_)),
-        rows_(state.grains.size()) {
+        usual_(usual),
+        rows_(scope == Scope::all ? state.grains.size() : 0) {
     const bool warm = bound_.value > 0;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       const Inertia inertia = inertia_of(state.grains, static_cast<Index>(i));
@@ -130,8 +132,8 @@ class Presser {
     GrainSums& row = out.rows[state_.wall_contacts[w].grain];
     add_side(row.block, s, {}, 1);
     const double stretch = std::abs(s.normal - s.tangential);
-    row.play += Double8{stretch, s.tangential * found.counted.reach, stretch * found.turning,
-                        s.tangential * found.turning, 0, 0, 0, 0};
+    row.play += Double8{
+        stretch, s.tangential * found.counted.reach, stretch * found.turning, s.tangential * found.turning, 0, 0, 0, 0};
     add_couples(row, s.n, found.counted, found.turning);
   }
 
@@ -153,7 +155,7 @@ class Presser {
     const auto m = met<double>(c);
     const Vec3 from = counted_direction(bound_, c);
     const auto pair = this->pair<double>(c, m);
-    const double may = bound_.overlap[c], reach = allowed(pair, m, std::max(rows_[i].x, rows_[j].x), may);
+    const double may = bound_.overlap[c], reach = allowed(pair, m, std::max(bound_.grain[i], bound_.grain[j]), may);
     if (!is_beyond(m, from, may, foreseen(pair, m), std::min(turn[i], turn[j]))) return;
     found.push_back({i, j, c, m.g.n, turned(m, from), m.approach.turning * options_.time, m.g.overlap > may,
                      counted(c, m, std::max(may, reach)), norm(from) > 0 ? counted(c, m, may) : Counted{}});
@@ -163,7 +165,7 @@ class Presser {
     const auto m = met_wall(w);
     const Vec3 from = bound_.wall_direction[w];
     const auto pair = wall_pair(w);
-    const double may = bound_.wall_overlap[w], reach = allowed(pair, m, rows_[i].x, may);
+    const double may = bound_.wall_overlap[w], reach = allowed(pair, m, bound_.grain[i], may);
     if (!is_beyond(m, from, may, foreseen(pair, m), turn[i])) return;
     found.push_back({i, no_index, w, m.g.n, turned(m, from), m.approach.turning * options_.time, m.g.overlap > may,
                      counted_wall(w, m, std::max(may, reach)), norm(from) > 0 ? counted_wall(w, m, may) : Counted{}});
@@ -234,9 +236,8 @@ class Presser {
   WallSpring take_wall(std::size_t w, StandingBound& bound) const {
     const auto m = met_wall(w);
     const double before = bound.wall_overlap[w];
-    const double reach = options_.looked.empty()
-                             ? allowed(wall_pair(w), m, rows_[state_.wall_contacts[w].grain].x, before)
-                             : before;
+    const double reach =
+        options_.looked.empty() ? allowed(wall_pair(w), m, rows_[state_.wall_contacts[w].grain].x, before) : before;
     WallSpring found;
     found.counted = counted_wall(w, m, reach);
     found.turning = m.approach.turning * options_.time, found.outran = m.g.overlap > std::max(before, 0.0);
@@ -358,8 +359,8 @@ class Presser {
     return max(reach, m.g.overlap + min(m.approach.driven * S(options_.time), growth));
   }
 
-  /// What a contact may grow to unnoticed; `most`: bound of the stiffer of its grains, for which it was allowed `before`.
-  /// 0: it touches nothing till then.
+  /// What a contact may grow to unnoticed; `most`: bound of the stiffer of its grains, for which it was allowed
+  /// `before`. 0: it touches nothing till then.
   template <class S>
   S allowed(const Pair<S>& pair, const Met<S>& m, const S& most, const S& before) const {
     const S overlap = max(m.g.overlap, S(0.0)), grown = m.g.overlap + m.approach.speed * S(options_.time);
@@ -529,7 +530,7 @@ void look_at_all(const Scene& scene, State& state, const PressOptions& options, 
   constexpr auto chunk = static_cast<std::ptrdiff_t>(Contacts::chunk);
   if (schedule.chunks() == 0) std::ranges::fill(out.rows, GrainSums{});
   with_law(scene.contact.law, [&]<class Law>(Law) {
-    const Presser<Law> presser(scene, state, options);
+    const Presser<Law> presser(scene, state, options, Scope::all, options.looked.empty() ? usual_overlap(bound) : 0.0);
     const auto pairs = [&](std::size_t k) {
       const auto first = static_cast<std::ptrdiff_t>(k) * chunk;
       std::fill(out.rows.begin() + first, out.rows.begin() + std::min(grains, first + chunk), GrainSums{});
@@ -561,7 +562,7 @@ void press_contacts(const Scene& scene, State& state, const PressOptions& option
   bound.direction.resize(3 * list.size());
   bound.wall_overlap.resize(state.wall_contacts.size()), bound.wall_direction.resize(state.wall_contacts.size());
   with_law(scene.contact.law, [&]<class Law>(Law) {
-    const Presser<Law> presser(scene, state, options);
+    const Presser<Law> presser(scene, state, options, Scope::all, options.looked.empty() ? usual_overlap(bound) : 0.0);
     const std::size_t chunks = list.chunk_begin.empty() ? 0 : list.chunk_begin.size() - 1;
 #pragma omp parallel for schedule(static) if (chunks >= Contacts::worth_threads)
     for (std::size_t k = 0; k < chunks; ++k)
@@ -574,7 +575,7 @@ std::vector<Beyond> look_beyond(const Scene& scene, const State& state, const Co
                                 std::span<const double> turn, const PressOptions& options) {
   std::vector<Beyond> found;
   with_law(scene.contact.law, [&]<class Law>(Law) {
-    const Presser<Law> presser(scene, state, options);
+    const Presser<Law> presser(scene, state, options, Scope::some, usual_overlap(state.policy.bound));
     for (const std::size_t c : selection.grains) presser.look(c, turn, found);
     for (const std::size_t w : selection.walls) presser.look_wall(w, turn, found);
   });
@@ -585,7 +586,7 @@ std::vector<CountedContact> counted_contacts(const Scene& scene, const State& st
                                              double time) {
   std::vector<CountedContact> found;
   with_law(scene.contact.law, [&]<class Law>(Law) {
-    const Presser<Law> presser(scene, state, {time, 0});
+    const Presser<Law> presser(scene, state, {time, 0}, Scope::some, 0);
     for (const std::size_t c : selection.grains) presser.count(c, found);
     for (const std::size_t w : selection.walls) presser.count_wall(w, found);
   });

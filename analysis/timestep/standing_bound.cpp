@@ -134,7 +134,8 @@ std::vector<Index> StandingBounds::beyond(const StandingBound& bound, const Scal
   std::vector<Index> grains;
   for (Index g = 0; g < plays.size(); ++g) {
     const double most = bound.value - std::max(plays[g].counted, plays[g].ahead);
-    if (!(found.ranges.high[g] < most) && !block_is_below(scalar_block(*sides_, found.t, g), sides_->of(g).size(), most))
+    if (!(found.ranges.high[g] < most) &&
+        !block_is_below(scalar_block(*sides_, found.t, g), sides_->of(g).size(), most))
       grains.push_back(g);
   }
   return grains;
