@@ -518,7 +518,8 @@ void lay_out(const State& state, Look& out) {
     out.schedule = {};
   else
     make_schedule(out.schedule, state.grains.size(), Contacts::chunk, list.j, list.chunk_begin);
-  out.rows.assign(std::max(out.schedule.rows(), state.grains.size()), {});
+  // Rows of grains begin at zero in every look, those beyond are left at zero by each.
+  out.rows.resize(std::max(out.schedule.rows(), state.grains.size()));
   out.scheduled = true;
 }
 

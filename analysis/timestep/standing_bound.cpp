@@ -13,8 +13,8 @@ namespace eg {
 namespace {
 
 constexpr double straight = 2;         // no two unit vectors are further apart
-constexpr std::size_t few = 16;        // one in so many contacts beyond what it is allowed: taken one by one
-constexpr std::size_t patched = 32;    // one in so many grains that do not fit, or 16: mended by themselves
+constexpr std::size_t few = 6;         // one in so many contacts beyond what it is allowed: taken one by one
+constexpr std::size_t patched = 16;    // one in so many grains that do not fit, or 16: mended by themselves
 constexpr std::size_t looked_at = 64;  // stiffest grains, for a lower bound
 constexpr double tight = 0.97;         // of the bound: from here on weights are improved in a check
 
@@ -230,8 +230,9 @@ bool StandingBounds::follow(State& state) {
   const auto& list = state.contacts;
   if (id_ != state.grains.id || bound.overlap.size() != i_.size()) return false;
   const auto pair = [](Index i, Index j) { return static_cast<std::uint64_t>(i) << 32 | j; };
-  StandingBound next;
-  next.overlap.resize(list.size()), next.weight.resize(list.size()), next.direction.resize(3 * list.size());
+  StandingBound& next = next_;
+  next.overlap.assign(list.size(), 0.0), next.weight.assign(list.size(), 0.0);
+  next.direction.assign(3 * list.size(), 0.0F);
   fresh_.clear();
   std::size_t o = 0;
   for (std::size_t c = 0; c < list.size(); ++c) {
@@ -251,7 +252,8 @@ bool StandingBounds::follow(State& state) {
       fresh_.push_back(c);
     }
   }
-  next.wall_overlap.resize(state.wall_contacts.size()), next.wall_direction.resize(state.wall_contacts.size());
+  next.wall_overlap.assign(state.wall_contacts.size(), 0.0),
+      next.wall_direction.assign(state.wall_contacts.size(), Vec3{});
   o = 0;
   for (std::size_t c = 0; c < state.wall_contacts.size(); ++c) {
     const std::array<Index, 2> key{state.wall_contacts[c].wall, state.wall_contacts[c].grain};
@@ -259,9 +261,8 @@ bool StandingBounds::follow(State& state) {
     if (o < walls_.size() && walls_[o] == key)
       next.wall_overlap[c] = bound.wall_overlap[o], next.wall_direction[c] = bound.wall_direction[o];
   }
-  bound.overlap = std::move(next.overlap), bound.weight = std::move(next.weight);
-  bound.direction = std::move(next.direction);
-  bound.wall_overlap = std::move(next.wall_overlap), bound.wall_direction = std::move(next.wall_direction);
+  bound.overlap.swap(next.overlap), bound.weight.swap(next.weight), bound.direction.swap(next.direction);
+  bound.wall_overlap.swap(next.wall_overlap), bound.wall_direction.swap(next.wall_direction);
   remember(state);
   return true;
 }

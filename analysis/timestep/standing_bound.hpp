@@ -78,6 +78,7 @@ class StandingBounds {
   std::vector<std::uint8_t> image_;
   std::vector<std::array<Index, 2>> walls_;  ///< wall and grain
   std::vector<double> turn_;                 ///< leave of each grain in the check under way
+  StandingBound next_;                       ///< room for follow()
   std::vector<std::size_t> fresh_;           ///< pairs that follow() met for the first time
   Look look_;                                ///< of the present lists once scheduled
   Pressed pressed_;                          ///< of the present lists once sides_ is set
