@@ -155,8 +155,9 @@ class Presser {
     const auto m = met<double>(c);
     const Vec3 from = counted_direction(bound_, c);
     const auto pair = this->pair<double>(c, m);
-    const double may = bound_.overlap[c], reach = allowed(pair, m, std::max(bound_.grain[i], bound_.grain[j]), may);
-    if (!is_beyond(m, from, may, foreseen(pair, m), std::min(turn[i], turn[j]))) return;
+    const double may = bound_.overlap[c], ahead = foreseen(pair, m);
+    if (!is_beyond(m, from, may, ahead, std::min(turn[i], turn[j]))) return;
+    const double reach = allowed(m, ahead, std::max(bound_.grain[i], bound_.grain[j]), may);
     found.push_back({i, j, c, m.g.n, turned(m, from), m.approach.turning * options_.time, m.g.overlap > may,
                      counted(c, m, std::max(may, reach)), norm(from) > 0 ? counted(c, m, may) : Counted{}});
   }
@@ -165,8 +166,9 @@ class Presser {
     const auto m = met_wall(w);
     const Vec3 from = bound_.wall_direction[w];
     const auto pair = wall_pair(w);
-    const double may = bound_.wall_overlap[w], reach = allowed(pair, m, bound_.grain[i], may);
-    if (!is_beyond(m, from, may, foreseen(pair, m), turn[i])) return;
+    const double may = bound_.wall_overlap[w], ahead = foreseen(pair, m);
+    if (!is_beyond(m, from, may, ahead, turn[i])) return;
+    const double reach = allowed(m, ahead, bound_.grain[i], may);
     found.push_back({i, no_index, w, m.g.n, turned(m, from), m.approach.turning * options_.time, m.g.overlap > may,
                      counted_wall(w, m, std::max(may, reach)), norm(from) > 0 ? counted_wall(w, m, may) : Counted{}});
   }
@@ -204,7 +206,8 @@ class Presser {
     const Mask real = e.m.distance > Batch(1e-140);  // padding has no length
     const Batch before = select(real, max(load_lanes(bound.overlap.data() + c), zero), zero);
     e.reach = before;
-    if (options_.looked.empty()) e.reach = select(real, allowed(pair, e.m, max(side_i.x, side_j.x), before), zero);
+    if (options_.looked.empty())
+      e.reach = select(real, allowed(e.m, foreseen(pair, e.m), max(side_i.x, side_j.x), before), zero);
     const NormalResponse<Batch> at = response(pair, e.reach);
     const Mask counts = e.reach > zero;
     e.kn = select(counts, damped(at.stiffness, e.m.inverse_mass, damping_.normal_ratio), zero);
@@ -236,8 +239,9 @@ class Presser {
   WallSpring take_wall(std::size_t w, StandingBound& bound) const {
     const auto m = met_wall(w);
     const double before = bound.wall_overlap[w];
-    const double reach =
-        options_.looked.empty() ? allowed(wall_pair(w), m, rows_[state_.wall_contacts[w].grain].x, before) : before;
+    const double reach = options_.looked.empty()
+                             ? allowed(m, foreseen(wall_pair(w), m), rows_[state_.wall_contacts[w].grain].x, before)
+                             : before;
     WallSpring found;
     found.counted = counted_wall(w, m, reach);
     found.turning = m.approach.turning * options_.time, found.outran = m.g.overlap > std::max(before, 0.0);
@@ -362,9 +366,9 @@ class Presser {
   /// What a contact may grow to unnoticed; `most`: bound of the stiffer of its grains, for which it was allowed
   /// `before`. 0: it touches nothing till then.
   template <class S>
-  S allowed(const Pair<S>& pair, const Met<S>& m, const S& most, const S& before) const {
+  S allowed(const Met<S>& m, const S& foreseen, const S& most, const S& before) const {
     const S overlap = max(m.g.overlap, S(0.0)), grown = m.g.overlap + m.approach.speed * S(options_.time);
-    S reach = foreseen(pair, m) + S(options_.slack) * overlap;
+    S reach = foreseen + S(options_.slack) * overlap;
     if (!(bound_.value > 0)) return select(grown > S(0.0), reach, S(0.0));
     const S stiffer = min(S(up_to * bound_.value) * reciprocal(max(most, S(1e-3 * bound_.value))), S(10.0));
     const S usual = clamp(S(2.0) * (stiffer - S(1.0)), 0, 1) * S(usual_);

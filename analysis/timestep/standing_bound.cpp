@@ -13,8 +13,8 @@ namespace eg {
 namespace {
 
 constexpr double straight = 2;         // no two unit vectors are further apart
-constexpr std::size_t few = 6;         // one in so many contacts beyond what it is allowed: taken one by one
-constexpr std::size_t patched = 16;    // one in so many grains that do not fit, or 16: mended by themselves
+constexpr std::size_t few = 16;        // one in so many contacts beyond what it is allowed: taken one by one
+constexpr std::size_t patched = 64;    // one in so many grains that do not fit, or 16: mended by themselves
 constexpr std::size_t looked_at = 64;  // stiffest grains, for a lower bound
 constexpr double tight = 0.97;         // of the bound: from here on weights are improved in a check
 

@@ -4,10 +4,10 @@
 // A renewal bounds the S_i of contact splitting with every pair at the overlap that it is allowed, somewhat more than
 // it has. A check looks at all listed pairs at the overlap and the direction that they can reach until the next one.
 // Pairs within what they are allowed change nothing. When few are not, each adds at most
-// (1 + t^±1) max(Δkn/m, Δkt (1/m + R²/I)) to λmax(S_i) of its grains (Weyl 1912), and something for its turn; when many
-// are not, or a grain does not fit below the bound any more, all S_i are worked out afresh. A spring of couples is
-// counted as one of twice its stiffness against the ground on each of its grains, which is not less. Proof:
-// certificates.md.
+// (1 + t^±1) max(Δkn/m, Δkt (1/m + R²/I)) to λmax(S_i) of its grains (Weyl 1912), and something for its turn; a grain
+// that this takes past the bound is worked out afresh with its own contacts (mend.hpp). When many pairs are not, or
+// grains cannot be mended, all S_i are. A spring of couples is counted as one of twice its stiffness against the ground
+// on each of its grains, which is not less. Proof: certificates.md.
 #include <optional>
 
 #include "timestep/pressed.hpp"
