@@ -21,7 +21,7 @@ constexpr std::uint64_t nearest = 4, furthest = 512;     // steps from one check
 constexpr std::uint64_t in_flow = 128;                   // … and where forecasts cost too much of the step
 constexpr std::uint64_t youngest = 1000, oldest = 5000;  // steps that a bound may live
 constexpr double slack = 0.05;                           // of an overlap: 2.5 % of the stiffness of a Hertz contact
-constexpr double least_room = 0.04, most_room = 0.4;
+constexpr double least_room = 0.04, most_room = 0.34;
 constexpr double loose = 0.75;  // step over limit, below which forecasts are taken to cost too much
 constexpr double gain = 1.04;   // of the step, from which on a renewal was worth its cost
 
