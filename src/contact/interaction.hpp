@@ -134,8 +134,8 @@ EG_INLINE ContactForce<S> interact(const typename Law::template Pair<S>& pair, c
     };
     const S cn = dashpot.normal_ratio * critical(out.law.normal.stiffness);
     out.dashpot = g.n * select(touching, cn * inc.approach, S(0.0));
-    if constexpr (Law::history_vectors >
-                  0) {  // a sliding contact has no shear dashpot, or it would exceed Coulomb's limit
+    if (Law::history_vectors > 0 && any(dashpot.shear_ratio > S(0.0))) {
+      // A sliding contact has no shear dashpot, or it would exceed Coulomb's limit.
       const Vec<S> lost = out.law.unslipped - out.law.shear;
       const S cs = dashpot.shear_ratio * critical(out.law.normal.tangential);
       const S stick = select(dot(lost, lost) > S(0.0), S(0.0), cs);
