@@ -96,6 +96,7 @@ void Engine::forces(double dt, TallyLevel tally, const AfterChunk& after) {
   options_.tally = level_ = tally;
   const Mat3 virial_before = state_.virial;
   const double power_before = body_power(state_);
+  const double applied = scene_.energy ? 0.5 * applied_work(state_, dt) : 0;  // with the velocities before any kick
   for (auto& b : state_.bodies) b.force = Vec3{}, b.spread = b.magnitude = b.stiffness = 0;
   work_.clear();
   Tally now;
@@ -121,7 +122,7 @@ void Engine::forces(double dt, TallyLevel tally, const AfterChunk& after) {
   e.shear_work += now.shear_work, e.friction += now.friction, e.viscous_damping += now.viscous;
   for (std::size_t k = 0; k < 9; ++k)
     e.boundary -= 0.5 * (virial_before.a[k] + virial.a[k]) * state_.cell.rate.a[k] * dt;
-  e.boundary += 0.5 * (power_before + body_power(state_)) * dt + 0.5 * applied_work(state_, dt);
+  e.boundary += 0.5 * (power_before + body_power(state_)) * dt + applied;
 }
 
 void Engine::change_membrane() {

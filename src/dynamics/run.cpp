@@ -161,7 +161,8 @@ bool run_stages(const Scene& scene, State& state, StepPolicy& policy, const RunO
     control->set_rate(state, taken);
     bodies->drive(state, state.dt);
     const bool checked = level == TallyLevel::works;
-    if (checked) state.unbalanced = engine.unbalanced_ratio(), state.kinetic = engine.kick_sums().kinetic;
+    if (checked) state.unbalanced = engine.unbalanced_ratio();
+    if (checked || scene.energy) state.kinetic = engine.kick_sums().kinetic;  // rows by strain fall between checks
 
     const RunStatus status{stage, engine, state.unbalanced,
                            std::max(stress_error(state, stage), servo_error(scene, state)), state.kinetic};

@@ -14,6 +14,7 @@
 #include "dynamics/run.hpp"
 #include "io/scene_file.hpp"
 #include "measure/measure_sphere.hpp"
+#include "support/hold.hpp"
 #include "support/scene_text.hpp"
 #include "support/scenes.hpp"
 #include "timestep/controller.hpp"
@@ -329,12 +330,13 @@ double bisected_limit(const Scene& prepared, const State& start, double guess) {
   return std::sqrt(low * high);
 }
 
-/// At rest at the end of its last stage, far below what bisected_limit() stirs up.
+/// At rest at the end of its last stage, far below what bisected_limit() stirs up, and with contacts that hold.
 State prepared(Scene scene, State state) {
   scene.stages.back().until_unbalanced = 1e-8, scene.stages.back().until_steps = not_given;
   scene.stages.back().max_steps = 600000;
   run(scene, state);
   state.stage = scene.stages.size() - 1;
+  test::hold_all_contacts(state);
   return state;
 }
 

@@ -12,6 +12,7 @@
 #include "io/scene_file.hpp"
 #include "io/snapshot.hpp"
 #include "state/gather.hpp"
+#include "support/hold.hpp"
 #include "support/scene_text.hpp"
 #include "support/scenes.hpp"
 #include "timestep/controller.hpp"
@@ -145,19 +146,28 @@ TEST(MembraneRun, CylinderHoldsThePressureAndTheFrictionOfItsEnds) {
   EXPECT_LT(state.membrane.solid / state.membrane.volume, 0.7);
 }
 
-/// A grain that breaks loose as the cap starts (as in the first specimen) costs 1e-3 of the work at the usual step, and
-/// less at smaller ones; without that it closes to 1e-4.
+/// Through slips in which grains reach 1 m/s too (seeds 7 and 8); there rows in between hold half a step of damping
+/// more.
 TEST(MembraneRun, LedgerCloses) {
-  Confined now(2);
-  State& state = now.state;
-  const EnergyTable before = energies(now.scene, state);
-  state.stage = 2, state.stage_step = 0, state.stage_time = 0;
-  state.policy = {};
-  begin_body_stage(now.scene, state);
-  run(now.scene, state);
-  const EnergyTable after = energies(now.scene, state);
-  EXPECT_GT(after.friction - before.friction, 1e-6);
-  EXPECT_NEAR(after.residual, before.residual, 1e-4 * std::abs(after.work - before.work));
+  for (const std::uint64_t seed : {1, 2, 7, 8, 11}) {
+    Confined now(seed);
+    State& state = now.state;
+    const EnergyTable before = energies(now.scene, state);
+    state.stage = 2, state.stage_step = 0, state.stage_time = 0;
+    state.policy = {};
+    begin_body_stage(now.scene, state);
+    double worst = 0;
+    RunObserver observer;
+    observer.step = [&](const State& s, const RunStatus&) {
+      if (s.stage_step % 7 == 0) worst = std::max(worst, std::abs(energies(now.scene, s).residual - before.residual));
+    };
+    run(now.scene, state, observer);
+    const EnergyTable after = energies(now.scene, state);
+    EXPECT_GT(after.friction - before.friction, 1e-6);
+    const double work = std::abs(after.work - before.work);
+    EXPECT_NEAR(after.residual, before.residual, 1e-4 * work) << "seed " << seed;
+    EXPECT_LT(worst, 5e-4 * work) << "seed " << seed;
+  }
 }
 
 TEST(MembraneRun, ResumedRunsAreTheSameBitForBit) {
@@ -193,24 +203,27 @@ TEST(MembraneRun, ResumedRunsAreTheSameBitForBit) {
 
 // Loads that stay between layings add nothing to K: the solver blows up where the eigenvalues of the springs say.
 TEST(MembraneRun, StepIsThatOfTheSprings) {
-  Confined now = confined();
-  Scene& scene = now.scene;
-  State& state = now.state;
-  scene.stages[1].bodies.clear();  // the cap stays where it is
-  begin_body_stage(scene, state);
-  scene.stages[1].until_unbalanced = 1e-9, scene.stages[1].until_stress_error = not_given;
-  scene.stages.pop_back();
-  run(scene, state);
-  state.stage = 1;
-  ASSERT_GT(state.applied.size(), 50u);
-  scene.stages[1].local_damping = 0.0;
-  const StepInterval interval = step_interval(linearise(scene, state));
-  ASSERT_LT(interval.dt_limit_upper / interval.dt_safe, 1.002);
-  SolverLimitOptions options;
-  options.bracket.guess = interval.dt_safe, options.bracket.tolerance = 1e-3;
-  const auto found = solver_limit(scene, state, options);
-  EXPECT_NEAR(found.stable / interval.dt_limit_upper, 1, 5e-3);
-  EXPECT_NEAR(found.unstable / interval.dt_safe, 1, 5e-3);
+  for (const std::uint64_t seed : {1, 2, 7, 9, 13}) {
+    Confined now(seed);
+    Scene& scene = now.scene;
+    State& state = now.state;
+    scene.stages[1].bodies.clear();  // the cap stays where it is
+    begin_body_stage(scene, state);
+    scene.stages[1].until_unbalanced = 1e-9, scene.stages[1].until_stress_error = not_given;
+    scene.stages.pop_back();
+    run(scene, state);
+    state.stage = 1;
+    ASSERT_GT(state.applied.size(), 50u);
+    scene.stages[1].local_damping = 0.0;
+    const StepInterval interval = step_interval(linearise(scene, state));
+    ASSERT_LT(interval.dt_limit_upper / interval.dt_safe, 1.002);
+    test::hold_all_contacts(state);
+    SolverLimitOptions options;
+    options.bracket.guess = interval.dt_safe, options.bracket.tolerance = 1e-3;
+    const auto found = solver_limit(scene, state, options);
+    EXPECT_NEAR(found.stable / interval.dt_limit_upper, 1, 3e-3) << "seed " << seed;
+    EXPECT_NEAR(found.unstable / interval.dt_safe, 1, 3e-3) << "seed " << seed;
+  }
 }
 
 TEST(MembraneRun, GrainThatComesThroughStopsTheRun) {
