@@ -12,6 +12,7 @@
 #include "dynamics/engine.hpp"
 #include "io/scene_file.hpp"
 #include "report/table.hpp"
+#include "search/neighbours.hpp"
 #include "specimen/lattice.hpp"
 #include "state/friction.hpp"
 
@@ -34,6 +35,15 @@ std::size_t bytes_of(const T& v) {
   return v.size() * sizeof(typename T::value_type);
 }
 
+/// What upkeep of the lists holds on to while a run goes on: here, what one renewal of them leaves.
+std::size_t upkeep_bytes(State s) {
+  ListScratch scratch;
+  rebuild_neighbours(s, s.list.skin, s.list.contact_skin, scratch);
+  const Contacts& c = scratch.contacts;
+  return bytes_of(scratch.order) + bytes_of(scratch.entries) + bytes_of(scratch.count) + bytes_of(c.i) + bytes_of(c.j) +
+         bytes_of(c.image) + bytes_of(c.history) + bytes_of(c.friction);
+}
+
 std::vector<ArraySize> arrays_of(const State& s, const ForceWorkspace& w) {
   return {{"position and radius", bytes_of(s.grains.position)},
           {"velocity and mass", bytes_of(s.grains.velocity)},
@@ -47,6 +57,7 @@ std::vector<ArraySize> arrays_of(const State& s, const ForceWorkspace& w) {
           {"contact pairs",
            bytes_of(s.contacts.i) + bytes_of(s.contacts.j) + bytes_of(s.contacts.image) + bytes_of(w.schedule.target)},
           {"contact history", bytes_of(s.contacts.history)},
+          {"upkeep of the lists", upkeep_bytes(s)},
           {"walls", bytes_of(s.walls)},
           {"wall contacts", bytes_of(s.wall_contacts)}};
 }

@@ -24,6 +24,21 @@ void check_subcommand(const CLI::App& app, int argc, char** argv) {
       meant.empty() ? "`eigengrain --help` lists what there is" : fmt::format("did you mean \"{}\"?", meant)));
 }
 
+/// The options of the subcommand in use that words of the command line may have meant.
+std::string meant_options(const CLI::App& app) {
+  const CLI::App* used = &app;
+  while (!used->get_subcommands().empty()) used = used->get_subcommands().front();
+  std::vector<std::string> names;
+  for (const auto* option : used->get_options())
+    for (const auto& name : option->get_lnames()) names.push_back("--" + name);
+  std::string text;
+  for (const auto& word : app.remaining(true)) {
+    const auto meant = word.starts_with("--") ? eg::nearest(word.substr(0, word.find('=')), names) : "";
+    if (!meant.empty()) text += fmt::format("; did you mean \"{}\"?", meant);
+  }
+  return text;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -32,7 +47,8 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", eg::version());
   app.failure_message([](const CLI::App* a, const CLI::Error& e) {
-    return fmt::format("eigengrain: {}; `eigengrain {}--help` lists what there is\n", e.what(),
+    return fmt::format("eigengrain: {}{}; `eigengrain {}--help` lists what there is\n", e.what(),
+                       e.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError) ? meant_options(*a) : "",
                        a->get_subcommands().empty() ? "" : a->get_subcommands().front()->get_name() + " ");
   });
   eg::Action action;

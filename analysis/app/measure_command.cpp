@@ -104,10 +104,11 @@ void add_measure_command(CLI::App& app, Action& action) {
   auto* sub = app.add_subcommand("measure", "stress, fabric, forces and sizes of a packing");
   auto flags = std::make_shared<MeasureFlags>();
   add_packing_options(*sub, flags->packing);
-  sub->add_option("--figure", flags->figure, "draw a figure (.svg, .png or .pdf): the one named by --plot");
+  auto* figure =
+      sub->add_option("--figure", flags->figure, "draw a figure (.svg, .png or .pdf): the one named by --plot");
   auto figures = measure_figures();
   figures.insert(figures.end(), slice_figures().begin(), slice_figures().end());
-  sub->add_option("--plot", flags->plot, "which figure (default: rose)")->check(CLI::IsMember(figures));
+  sub->add_option("--plot", flags->plot, "which figure (default: rose)")->check(CLI::IsMember(figures))->needs(figure);
   sub->add_option("--chains", flags->chains, "write contacts and force chains for ParaView (.vtp)");
   sub->add_option("--split", flags->splits, "diameters between size fractions, D1,D2,... [m]")->delimiter(',');
   sub->add_option("--sphere", flags->spheres, "measure inside a sphere X,Y,Z,RADIUS (2D: X,Y,RADIUS) [m]; repeatable")

@@ -12,6 +12,7 @@
 #include "boundary/cell_control.hpp"
 #include "io/packing_file.hpp"
 #include "io/scene_file.hpp"
+#include "specimen/lattice.hpp"
 #include "specimen/make_packing.hpp"
 #include "specimen/make_state.hpp"
 #include "state/friction.hpp"
@@ -70,11 +71,52 @@ Packing bare_grains(const State& state) {
   return packing;
 }
 
-}  // namespace
+/// Packings that cannot be made are faults of the scene's numbers.
+Packing packing_of(const Scene& scene) {
+  try {
+    return make_packing(scene);
+  } catch (const RunError& e) {
+    throw scene_error(scene, "specimen", "specimen:", e.what());
+  }
+}
 
-State make_specimen(const Scene& scene) {
-  if (scene.specimen.source != SpecimenSpec::Source::file) return make_state(scene, make_packing(scene));
+/// The largest stress that a stage asks for [Pa] (2D: N/m).
+double largest_target(const StageSpec& stage) {
+  double most = std::abs(stage.membrane_stress);
+  for (const auto& c : stage.control)
+    if (c.kind == ComponentControl::Kind::stress) most = std::max(most, std::abs(c.value));
+  for (const auto& drive : stage.bodies)
+    if (drive.servo == BodyDrive::Servo::stress) most = std::max(most, std::abs(drive.target));
+  return most;
+}
+
+/// A modulus in GPa instead of Pa, or a stress in kPa, would else end in a cell that has shrunk to nothing.
+void check_stiffness(const Scene& scene, const State& state) {
+  constexpr double senseless = 0.3;  // overlap over diameter
+  const auto lattice = find_lattice(state.dimension == 3 ? "fcc" : "hexagonal");
+  double radius = 0;
+  for (const Quad& x : state.grains.position) radius += x.w / static_cast<double>(state.grains.size());
+  const double carried = lattice_pressure(*lattice, radius, senseless, normal_force(scene));
+  for (const auto& stage : scene.stages) {
+    if (largest_target(stage) <= carried) continue;
+    const Material& m = scene.materials.front();
+    const bool modulus = !std::isnan(m.shear_modulus);
+    const std::string key = fmt::format("material.{}.{}", m.name, modulus ? "shear_modulus" : "normal_stiffness");
+    throw scene_error(
+        scene, key, fmt::format("{} = {:g}", key, modulus ? m.shear_modulus : m.normal_stiffness),
+        fmt::format("is too soft: grains would overlap by more than {:.0f} % of their diameter under the "
+                    "{:g} {} of stage \"{}\"",
+                    100 * senseless, largest_target(stage), state.dimension == 3 ? "Pa" : "N/m", stage.name),
+        modulus ? "give it in Pa (quartz: 29e9), and stresses too" : "give it in N/m, stresses in Pa");
+  }
+}
+
+State stated(const Scene& scene) {
+  if (scene.specimen.source != SpecimenSpec::Source::file) return make_state(scene, packing_of(scene));
   const std::string path = resolve_path(scene, scene.specimen.path);
+  if (!std::filesystem::exists(path))
+    throw scene_error(scene, "specimen.path", fmt::format("specimen.path = \"{}\"", scene.specimen.path),
+                      "names a file that is not there", "paths start from the folder of the scene");
   const bool periodic = scene.boundary.kind == BoundarySpec::Kind::periodic;
   if (!looks_like_snapshot(path)) return make_state(scene, read_packing(path, periodic));
   State state = read_snapshot(path).state;  // grains, contacts and cell; the new scene's stages begin
@@ -86,6 +128,14 @@ State make_specimen(const Scene& scene) {
   state.friction.clear();
   fit_rotation(scene, state);
   scatter_friction(state, friction_scatter(scene));
+  return state;
+}
+
+}  // namespace
+
+State make_specimen(const Scene& scene) {
+  State state = stated(scene);
+  check_stiffness(scene, state);
   return state;
 }
 

@@ -75,6 +75,8 @@ Hdf5Handle open_file(const std::string& path) {
   const Quiet quiet;
   if (std::error_code ignored; !std::filesystem::exists(path, ignored))
     throw input_error(path, 0, "cannot be opened", "(No such file or directory)", "check the path");
+  if (std::error_code ignored; std::filesystem::file_size(path, ignored) == 0)
+    throw input_error(path, 0, "is an empty file:", "it holds no bytes", "name a .h5 file that a run has written");
   if (H5Fis_hdf5(path.c_str()) <= 0)
     throw input_error(path, 0, "is no snapshot:", "it is not an HDF5 file", "name a .h5 file that a run has written");
   Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
@@ -130,6 +132,11 @@ bool Hdf5Reader::recognises(const std::string& path) {
   return H5Fis_hdf5(path.c_str()) > 0;
 }
 
+void Hdf5Reader::missing(const std::string& name) const {
+  throw input_error(path_, 0, "has no dataset", name + ": an earlier eigengrain wrote it, or it is damaged",
+                    "read it with the version that wrote it, or use another snapshot");
+}
+
 void Hdf5Reader::damaged(const std::string& name, const std::string& fault) const {
   throw input_error(path_, 0, "is damaged:", "dataset " + name + " " + fault, "use another snapshot");
 }
@@ -142,7 +149,7 @@ bool Hdf5Reader::has(const std::string& name) const {
 Hdf5Handle Hdf5Reader::open(const std::string& name, hid_t type, Hdf5Shape& shape) const {
   const Quiet quiet;
   Hdf5Handle set(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
-  if (!set.valid()) damaged(name, "is missing");
+  if (!set.valid()) missing(name);
   const Hdf5Handle stored(H5Dget_type(set), H5Tclose);
   if (H5Tequal(stored, type) <= 0) damaged(name, "is of another type than expected");
   const Hdf5Handle space(H5Dget_space(set), H5Sclose);
@@ -178,7 +185,7 @@ void Hdf5Reader::read_run(const Hdf5Handle& set, const std::string& name, hid_t 
 unsigned long long Hdf5Reader::rows(const std::string& name) const {
   const Quiet quiet;
   const Hdf5Handle set(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
-  if (!set.valid()) damaged(name, "is missing");
+  if (!set.valid()) missing(name);
   const Hdf5Handle space(H5Dget_space(set), H5Sclose);
   Hdf5Shape shape(static_cast<std::size_t>(std::max(1, H5Sget_simple_extent_ndims(space))), 0);
   H5Sget_simple_extent_dims(space, shape.data(), nullptr);
@@ -188,7 +195,7 @@ unsigned long long Hdf5Reader::rows(const std::string& name) const {
 std::string Hdf5Reader::read_text(const std::string& name) const {
   const Quiet quiet;
   const Hdf5Handle set(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
-  if (!set.valid()) damaged(name, "is missing");
+  if (!set.valid()) missing(name);
   const Hdf5Handle type(H5Dget_type(set), H5Tclose);
   const std::size_t size = H5Tget_size(type);
   if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0 || size > H5Dget_storage_size(set))

@@ -150,6 +150,7 @@ void check_distinct(const Packing& packing, const std::string& file) {
 }  // namespace
 
 Packing parse_packing(std::string_view text, const std::string& file, bool wrap) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // the mark some editors put before UTF-8
   check_text(text, file);
   Lines line(text, file);
   if (!line.next())

@@ -237,6 +237,9 @@ void read_top(const TomlReader& top, Scene& scene) {
   const auto specimen = *top.table("specimen", required);
   read_specimen(specimen, scene.dimension, scene.specimen);
   read_boundary(*top.table("boundary", required), scene);
+  if (scene.boundary.kind == BoundarySpec::Kind::periodic && norm(scene.gravity) > 0)
+    throw top.error("gravity", "has no ground in a cell that is periodic in every direction: grains would fall forever",
+                    "leave it out, or set boundary.type to \"box\" or \"free\" with walls");
   if (scene.specimen.trim && scene.boundary.kind == BoundarySpec::Kind::periodic)
     throw specimen.error("trim", "leaves nothing that is periodic", "set boundary.type to \"box\" or \"free\"");
   if (const auto t = top.table("damping")) read_damping(*t, scene.damping);
@@ -287,8 +290,23 @@ Scene parse_scene(std::string_view text, const std::string& file, const SceneSet
 Scene read_scene(const std::string& path, const SceneSettings& settings) {
   Scene scene = parse_scene(read_file(path), path, settings);
   const std::string folder = std::filesystem::path(path).parent_path().string();
-  for (auto& mesh : scene.boundary.meshes) read_mesh_file(mesh, folder);
+  for (std::size_t k = 0; k < scene.boundary.meshes.size(); ++k) {
+    auto& mesh = scene.boundary.meshes[k];
+    if (!std::filesystem::exists(resolve_path(scene, mesh.path)))
+      throw scene_error(scene, fmt::format("boundary.mesh[{}].file", k), fmt::format("file = \"{}\"", mesh.path),
+                        "of [[boundary.mesh]] is not there", "paths start from the folder of the scene");
+    read_mesh_file(mesh, folder);
+  }
   return scene;
+}
+
+InputError scene_error(const Scene& scene, std::string_view key, std::string_view subject, std::string_view rule,
+                       std::string_view remedy) {
+  const toml::table table = parse_toml(scene.text, scene.file);
+  const auto node = table.at_path(key);
+  const long before = table.contains("settings") ? 1 : 0;  // the line that holds them comes first
+  return one_line_error(scene.file, node ? static_cast<long>(node.node()->source().begin.line) - before : 0, subject,
+                        rule, remedy);
 }
 
 std::string resolve_path(const Scene& scene, const std::string& path) {

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/error.hpp"
 #include "state/scene.hpp"
 
 namespace eg {
@@ -20,6 +21,11 @@ Scene read_scene(const std::string& path, const SceneSettings& = {});
 
 /// The same for a text at hand; `file` stands in messages and is where relative paths start from.
 Scene parse_scene(std::string_view text, const std::string& file = "<memory>", const SceneSettings& = {});
+
+/// The error "file:line: subject rule; remedy" for what shows only when the scene is put to use, with the line of `key`
+/// (dotted, e.g. "specimen.path") in the scene's text where it stands there.
+InputError scene_error(const Scene&, std::string_view key, std::string_view subject, std::string_view rule,
+                       std::string_view remedy = {});
 
 /// Path of a file that the scene names, relative to the scene file unless absolute.
 std::string resolve_path(const Scene&, const std::string& path);

@@ -60,7 +60,13 @@ std::string TomlReader::element(std::string_view key, std::size_t k) const {
   return fmt::format("{}[{}]", full(key), k + 1);
 }
 
-std::string TomlReader::place() const { return path_.empty() ? "the top of the file" : fmt::format("[{}]", path_); }
+std::string TomlReader::place() const {
+  if (path_.empty()) return "the top of the file";
+  if (!path_.ends_with(']')) return fmt::format("[{}]", path_);
+  const auto bracket = path_.rfind('[');  // an array of tables, as the file has it
+  return fmt::format("[[{}]] number {}", path_.substr(0, bracket),
+                     path_.substr(bracket + 1, path_.size() - bracket - 2));
+}
 
 InputError TomlReader::error_at(const toml::node& node, std::string_view subject, std::string_view rule,
                                 std::string_view remedy) const {
@@ -248,7 +254,10 @@ bool TomlReader::texts(std::string_view key, std::vector<std::string>& out) cons
 std::optional<TomlReader> TomlReader::table(std::string_view key, Need need) const {
   const toml::node* node = find(key, need);
   if (!node) return {};
-  if (!node->is_table()) throw error(key, "must be a table", fmt::format("write [{0}] or {0} = {{ … }}", full(key)));
+  if (!node->is_table())
+    throw error(key, "must be a table",
+                path_.ends_with(']') ? fmt::format("write {} = {{ … }}", key)
+                                     : fmt::format("write [{0}] or {0} = {{ … }}", full(key)));
   return TomlReader(*node->as_table(), file_, full(key));
 }
 

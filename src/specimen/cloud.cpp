@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/progress.hpp"
 #include "specimen/level_grid.hpp"
 
 namespace eg {
@@ -54,8 +55,11 @@ class Cloud {
   /// Inserts grains without overlap, largest first, and anywhere once the attempts are used up.
   /// Returns whether they lasted.
   bool insert(Random& random) {
-    std::size_t left = attempts * radii_.size();
+    std::size_t left = attempts * radii_.size(), done = 0;
+    Progress progress("placing grains", static_cast<double>(radii_.size()), "grains");
+    progress.every(2, 10);
     for (const Index i : order_) {
+      progress.update(static_cast<double>(done++));
       position_[i] = anywhere(i, random);
       for (; left > 0 && !is_free(i); --left) position_[i] = anywhere(i, random);
       grid_.insert(i, position_[i], reach(i));
@@ -65,8 +69,12 @@ class Cloud {
 
   /// Pushes every overlapping pair apart by the mean of what its contacts ask for. Returns whether no overlap is left.
   bool push_apart() {
-    for (int sweep = 0; sweep < most_sweeps; ++sweep)
+    Progress progress("pushing grains apart", 0, "sweeps");
+    progress.every(2, 10);
+    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+      progress.update(sweep);
       if (push_once() >= gap) return true;
+    }
     return false;
   }
 

@@ -14,9 +14,6 @@
 
 namespace eg {
 
-namespace {
-
-/// The scene's contact law between two grains of its first material.
 NormalForce normal_force(const Scene& scene) {
   NormalForce force;
   with_law(scene.contact.law, [&](auto law) {
@@ -31,6 +28,8 @@ NormalForce normal_force(const Scene& scene) {
     throw input_error(scene.file, 0, fmt::format("contact.law = \"{}\"", scene.contact.law), "is not a contact law");
   return force;
 }
+
+namespace {
 
 double overlap_of(const Scene& scene, const LatticeCell& cell) {
   const auto& spec = scene.specimen;

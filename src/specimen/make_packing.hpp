@@ -1,4 +1,5 @@
 #pragma once
+#include "specimen/lattice.hpp"
 #include "state/packing.hpp"
 #include "state/scene.hpp"
 
@@ -8,5 +9,8 @@ namespace eg {
 /// Throws InputError when the scene contradicts itself or its pressure cannot be reached, RunError when a cloud cannot
 /// be made (specimen/cloud.hpp). A scene of source "file" has no packing of its own: read it, see io/packing_file.hpp.
 Packing make_packing(const Scene&);
+
+/// The scene's contact law between two grains of its first material.
+NormalForce normal_force(const Scene&);
 
 }  // namespace eg

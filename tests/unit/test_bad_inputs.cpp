@@ -102,7 +102,7 @@ const std::vector<SceneCase> scene_cases{
      "expand_to, grading, scale, solid_fraction, source, trim"},
     {20, "until = { stress_eror = 1e-3 }",
      "s.toml:20: stage[1].until.stress_eror is not a known key; did you mean \"stress_error\"?"},
-    {20, "", "s.toml:17: stage[1].until is missing; add \"until\" to [stage[1]]"},
+    {20, "", "s.toml:17: stage[1].until is missing; add \"until\" to [[stage]] number 1"},
     // types
     {1, "dimension = \"3\"",
      "s.toml:1: dimension = \"3\" must be a number; write it in SI units, without quotes and without a unit"},
@@ -115,9 +115,10 @@ const std::vector<SceneCase> scene_cases{
     {19, "stress = { isotropic = \"100 kPa\" }",
      "s.toml:19: stage[1].stress.isotropic = \"100 kPa\" must be a number; write it in SI units, without quotes and "
      "without a unit"},
-    {19, "stress = 100e3",
-     "s.toml:19: stage[1].stress = 100000 must be a table; write [stage[1].stress] or "
-     "stage[1].stress = { … }"},
+    {19, "stress = 100e3", "s.toml:19: stage[1].stress = 100000 must be a table; write stress = { … }"},
+    {1, "dimension = 3\ngravity = [0, 0, -9.81]",
+     "s.toml:2: gravity has no ground in a cell that is periodic in every direction: grains would fall forever; leave "
+     "it out, or set boundary.type to \"box\" or \"free\" with walls"},
     {17, "[stage]", "s.toml:17: stage must be an array of tables; write [[stage]]"},
     {12, "grading = { passing = [[1e-3, 0], 2e-3] }",
      "s.toml:12: specimen.grading.passing[2] = 0.002 must be an array of two numbers"},
@@ -470,6 +471,12 @@ TEST(BadInputs, Files) {
   EXPECT_EQ(message_of([&] { eg::read_packing(scratch.folder()); }),
             scratch.folder() + ": is a folder, not a file; name a file in it");
 
+  eg::write_file(path, "");
+  EXPECT_EQ(snapshot_message(), path + ": is an empty file: it holds no bytes; name a .h5 file that a run has written");
+  eg::write_file(path,
+                 "\xEF\xBB\xBF"
+                 "1 1 1\n0 0 0 0.1\n");
+  EXPECT_EQ(eg::read_packing(path).size(), 1u);
   eg::write_file(path, "1 1 1\n0 0 0 0.1\n");
   EXPECT_FALSE(eg::looks_like_snapshot(path));
   EXPECT_EQ(snapshot_message(),
@@ -498,7 +505,9 @@ TEST(BadInputs, Files) {
                                     ": format_version = 2 must be 1 for eigengrain 0.1.0; read it with the version "
                                     "that wrote it, 9.9");
   only(1);
-  EXPECT_EQ(snapshot_message(), path + ": is damaged: dataset dimension is missing; use another snapshot");
+  EXPECT_EQ(snapshot_message(), path +
+                                    ": has no dataset dimension: an earlier eigengrain wrote it, or it is damaged; "
+                                    "read it with the version that wrote it, or use another snapshot");
 }
 
 /// A snapshot with one stretch of bytes changed either reads or gives one line; it never crashes.

@@ -13,7 +13,6 @@ using Kind = eg::ComponentControl::Kind;
 const char* triaxial = R"(title = "triaxial"
 dimension = 3
 seed = 7
-gravity = [0, 0, -9.81]
 
 [material.quartz]
 shear_modulus = 29e9
@@ -76,7 +75,7 @@ TEST(SceneFile, ReadsAFullScene) {
   EXPECT_EQ(eg::resolve_path(scene, "/grains.txt"), "/grains.txt");
   EXPECT_EQ(scene.dimension, 3);
   EXPECT_EQ(scene.seed, 7u);
-  EXPECT_EQ(scene.gravity.z, -9.81);
+  EXPECT_EQ(norm(scene.gravity), 0);
   ASSERT_EQ(scene.materials.size(), 2u);
   EXPECT_EQ(scene.materials[0].name, "quartz");
   EXPECT_EQ(scene.materials[0].shear_modulus, 29e9);
@@ -216,13 +215,13 @@ TEST(SceneFile, TextsAndCommentsMayHoldAnyLetter) {
 TEST(SceneFile, SettingsReplaceAddAndStayWithTheText) {
   const auto scene = eg::parse_scene(
       triaxial, "a.toml",
-      {"specimen.count = 300", "gravity[3]=-1", "contact.law=hertz-mindlin", "stage[1].until = { steps = 5 }",
+      {"specimen.count = 300", "specimen.aspect[3]=3", "contact.law=hertz-mindlin", "stage[1].until = { steps = 5 }",
        "stage[1].record.every_steps=2", "title=\"\u00b5 = 'x'\"", "material.coal={density=1, friction=0}",
        "material.coal.shear_modulus=1e9", "material.coal.poisson=0.1"});
   const auto again = eg::parse_scene(scene.text, "b.toml");
   for (const auto& s : {scene, again}) {
     EXPECT_EQ(s.specimen.count, 300u);
-    EXPECT_EQ(s.gravity.z, -1);
+    EXPECT_EQ(s.specimen.aspect[2], 3);
     EXPECT_EQ(s.contact.law, "hertz-mindlin");
     EXPECT_EQ(s.stages[0].until_steps, 5);
     EXPECT_TRUE(std::isnan(s.stages[0].until_stress_error));

@@ -1,0 +1,89 @@
+// What the program answers to input that only shows its fault when put to use: one line, a status, nothing written.
+#include <gtest/gtest.h>
+
+#include "support/case_run.hpp"
+
+namespace eg::test {
+namespace {
+
+struct Answer {
+  int status = 0;
+  std::string text;  ///< of standard error
+};
+
+class Refusals : public ::testing::Test {
+ protected:
+  Refusals() : folder_(std::filesystem::temp_directory_path() / ("eigengrain_refusals_" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(folder_);
+  }
+  ~Refusals() override { std::filesystem::remove_all(folder_); }
+
+  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(file(name)) << text;
+    return file(name);
+  }
+
+  /// A scene of which some lines are given: G on line 3, the specimen from line 10.
+  std::string scene(const std::string& modulus, const std::string& specimen) const {
+    return write(
+        "s.toml",
+        "dimension = 3\n[material.quartz]\nshear_modulus = " + modulus +
+            "\npoisson = 0.12\ndensity = 2650\nfriction = 0.3\n[contact]\nlaw = \"hertz-mindlin\"\n[specimen]\n" +
+            specimen +
+            "\n[boundary]\ntype = \"periodic\"\n[[stage]]\nname = \"press\"\nstress = { isotropic = 100e3 }\n"
+            "until = { stress_error = 1e-2 }\n");
+  }
+
+  Answer ask(const std::string& arguments) const {
+    const std::string command = std::string(EIGENGRAIN_PROGRAM) + " " + arguments + " 2>&1 >/dev/null";
+    std::FILE* pipe = popen(command.c_str(), "r");
+    Answer answer;
+    std::array<char, 4096> part{};
+    while (const auto n = std::fread(part.data(), 1, part.size(), pipe)) answer.text.append(part.data(), n);
+    answer.status = WEXITSTATUS(pclose(pipe));
+    return answer;
+  }
+  void expect_line(const std::string& arguments, const std::string& line) const {
+    const Answer answer = ask(arguments);
+    EXPECT_EQ(answer.status, 2) << arguments;
+    EXPECT_EQ(answer.text, line + "\n") << arguments;
+  }
+
+  std::filesystem::path folder_;
+};
+
+const std::string cloud = "source = \"cloud\"\ncount = 100\ngrading = { radius = 1e-3 }";
+
+TEST_F(Refusals, ModulusInGigapascal) {
+  const std::string path = scene("29", cloud), out = file("out");
+  expect_line("run " + path + " --out " + out,
+              path +
+                  ":3: material.quartz.shear_modulus = 29 is too soft: grains would overlap by more than 30 % of "
+                  "their diameter under the 100000 Pa of stage \"press\"; give it in Pa (quartz: 29e9), and "
+                  "stresses too");
+}
+
+TEST_F(Refusals, SpecimenThatCannotBeMade) {
+  const std::string path = scene("29e9", "source = \"file\"\npath = \"grains.txt\"");
+  expect_line("run " + path + " --out " + file("out"),
+              path +
+                  ":11: specimen.path = \"grains.txt\" names a file that is not there; paths start from the folder "
+                  "of the scene");
+  const std::string full = scene("29e9", cloud + "\nsolid_fraction = 0.69");
+  const Answer answer = ask("run " + full + " --out " + file("out"));
+  EXPECT_EQ(answer.status, 2);
+  EXPECT_TRUE(answer.text.starts_with(full + ":9: specimen: cloud of 100 grains: solid fraction 0.69")) << answer.text;
+}
+
+TEST_F(Refusals, OptionsMisspelt) {
+  expect_line("run --thread 2",
+              "eigengrain: The following argument was not expected: --thread; did you mean \"--threads\"?; "
+              "`eigengrain run --help` lists what there is");
+  const Answer answer = ask("measure x.h5 --plot rose");
+  EXPECT_EQ(answer.status, 2);
+  EXPECT_NE(answer.text.find("--plot requires --figure"), std::string::npos) << answer.text;
+}
+
+}  // namespace
+}  // namespace eg::test
