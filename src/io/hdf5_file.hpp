@@ -95,7 +95,7 @@ class Hdf5Reader {
   /// Number of rows of an array.
   unsigned long long rows(const std::string& name) const;
   std::string read_text(const std::string& name) const;
-  /// Throws InputError "path: is damaged: … of dataset name".
+  /// Throw InputError "path: has no dataset name: …", "path: is damaged: … of dataset name".
   [[noreturn]] void missing(const std::string& name) const;
   [[noreturn]] void damaged(const std::string& name, const std::string& fault) const;
 
