@@ -2,6 +2,7 @@
 // Arrays on cache-line boundaries, or on huge pages when they are large (fewer misses of the translation cache).
 #include <sys/mman.h>
 
+#include <cstdint>
 #include <cstdlib>
 #include <new>
 #include <vector>
@@ -18,6 +19,7 @@ struct AlignedAllocator {
   AlignedAllocator(const AlignedAllocator<U>&) {}
 
   T* allocate(std::size_t n) {
+    if (n > static_cast<std::size_t>(PTRDIFF_MAX) / (2 * sizeof(T))) throw std::bad_alloc();
     const std::size_t unit = n * sizeof(T) >= huge ? huge : line;
     const std::size_t bytes = (n * sizeof(T) + unit - 1) / unit * unit;
     void* p = std::aligned_alloc(unit, bytes);
