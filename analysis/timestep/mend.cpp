@@ -45,7 +45,7 @@ class Patch {
       std::vector<bool> open(sides.size(), false);
       bool all = true;
       for (const Index g : inner) {
-        const double most = bound.value - std::max(plays_[g].counted, plays_[g].ahead);
+        const double most = most_below(bound.value, plays_[g]);
         if (ranges_.high[g] < most || block_is_below(scalar_block(sides, weight_, g), sides.of(g).size(), most))
           continue;
         open[g] = true, all = false;
@@ -70,10 +70,7 @@ class Patch {
         set_direction(bound, contact.entry, contact.spring.n);
       }
     }
-    for (std::size_t g = 0; g < inner_; ++g) {
-      bound.grain[grains_[g]] = std::min(ranges_.high[g] + plays_[g].counted, bound.value);
-      bound.turning[grains_[g]] = plays_[g].turn;
-    }
+    for (std::size_t g = 0; g < inner_; ++g) keep_grain(bound, grains_[g], ranges_.high[g], plays_[g]);
   }
 
  private:

@@ -63,6 +63,13 @@ struct GrainPlay {
   double counted = 0;  ///< to be added to λmax(S_i) of the present directions for a bound about those counted
   double ahead = 0;    ///< … for one that holds until the next check
 };
+/// What λmax(S_i) of the present directions must stay below for a bound to hold until the next check.
+inline double most_below(double bound, const GrainPlay& play) { return bound - std::max(play.counted, play.ahead); }
+/// Sets what is known of a grain, `high` ≥ λmax(S_i) of the present directions.
+inline void keep_grain(StandingBound& bound, std::size_t grain, double high, const GrainPlay& play) {
+  bound.grain[grain] = std::min(high + play.counted, bound.value);
+  bound.turning[grain] = play.turn;
+}
 /// `met`: of every spring.
 std::vector<GrainPlay> plays_of(const Sides& sides, const std::vector<double>& t, std::span<const SpringMotion> met);
 

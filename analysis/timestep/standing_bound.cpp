@@ -67,10 +67,7 @@ double weight_of(const State& state, const Beyond& pair) {
 
 void keep_grains(const BlockRanges& ranges, const std::vector<GrainPlay>& plays, StandingBound& bound) {
   bound.grain.resize(plays.size()), bound.turning.resize(plays.size());
-  for (std::size_t g = 0; g < plays.size(); ++g) {
-    bound.grain[g] = std::min(ranges.high[g] + plays[g].counted, bound.value);
-    bound.turning[g] = plays[g].turn;
-  }
+  for (std::size_t g = 0; g < plays.size(); ++g) keep_grain(bound, g, ranges.high[g], plays[g]);
 }
 
 /// By how much all directions of a grain's contacts may be off.
@@ -133,7 +130,7 @@ std::vector<Index> StandingBounds::beyond(const StandingBound& bound, const Scal
                                           const std::vector<GrainPlay>& plays) const {
   std::vector<Index> grains;
   for (Index g = 0; g < plays.size(); ++g) {
-    const double most = bound.value - std::max(plays[g].counted, plays[g].ahead);
+    const double most = most_below(bound.value, plays[g]);
     if (!(found.ranges.high[g] < most) &&
         !block_is_below(scalar_block(*sides_, found.t, g), sides_->of(g).size(), most))
       grains.push_back(g);
@@ -149,7 +146,7 @@ bool StandingBounds::fits(State& state, double time, double slack) {
   bound_grains(state, look_.rows, look_.terms, look_.ranges, look_.plays);
   std::vector<Index> open;
   for (Index g = 0; g < look_.plays.size(); ++g) {
-    const double most = bound.value - std::max(look_.plays[g].counted, look_.plays[g].ahead);
+    const double most = most_below(bound.value, look_.plays[g]);
     if (!(look_.ranges.high[g] < most) && !block_is_below(block_of(state, g, look_.rows[g]), look_.terms, most))
       open.push_back(g);
   }

@@ -66,9 +66,9 @@ class Search {
       contacts_.make_matrices(ranges_.low, hot * std::min(1.0, goal(options_.loose) / maximum));
       for (int k = 0; k < sweeps; ++k) contacts_.sweep(squarings);
       contacts_.update(ranges_);
-      if (factorise(options_.loose, 1, 0.15, small_drop)) return;
+      const bool last = squarings == last_squaring;
+      if (factorise(options_.loose, 1, last ? 0.3 : 0.15, small_drop, last ? 2 * small : small)) return;
     }
-    if (factorise(options_.loose, 1, 0.3, small_drop, 2 * small)) return;
     split();
   }
 
