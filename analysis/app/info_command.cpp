@@ -35,6 +35,11 @@ std::size_t bytes_of(const T& v) {
   return v.size() * sizeof(typename T::value_type);
 }
 
+std::size_t bytes_of(const StandingBound& b) {
+  return bytes_of(b.overlap) + bytes_of(b.weight) + bytes_of(b.wall_overlap) + bytes_of(b.direction) +
+         bytes_of(b.wall_direction) + bytes_of(b.grain) + bytes_of(b.turning);
+}
+
 /// What upkeep of the lists holds on to while a run goes on: here, what one renewal of them leaves.
 std::size_t upkeep_bytes(State s) {
   ListScratch scratch;
@@ -54,10 +59,11 @@ std::vector<ArraySize> arrays_of(const State& s, const ForceWorkspace& w) {
           {"force schedule", bytes_of(w.schedule.gather_grain) + bytes_of(w.schedule.gather_row)},
           {"reference positions", bytes_of(s.list.reference)},
           {"neighbour list", bytes_of(s.list.begin) + bytes_of(s.list.j) + bytes_of(s.list.image)},
-          {"contact pairs",
-           bytes_of(s.contacts.i) + bytes_of(s.contacts.j) + bytes_of(s.contacts.image) + bytes_of(w.schedule.target)},
+          {"contact pairs", bytes_of(s.contacts.i) + bytes_of(s.contacts.j) + bytes_of(s.contacts.image) +
+                                bytes_of(s.contacts.friction) + bytes_of(w.schedule.target)},
           {"contact history", bytes_of(s.contacts.history)},
           {"upkeep of the lists", upkeep_bytes(s)},
+          {"bound of the step", bytes_of(s.policy.bound)},
           {"walls", bytes_of(s.walls)},
           {"wall contacts", bytes_of(s.wall_contacts)}};
 }

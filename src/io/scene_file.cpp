@@ -257,7 +257,7 @@ void read_top(const TomlReader& top, Scene& scene) {
 
 /// `settings` of the file, or those from outside.
 void apply_settings(toml::table& table, const std::string& file, SceneSettings settings) {
-  const TomlReader top(table, file, "");
+  const TomlReader top(table, file);
   if (top.has("settings") && !settings.empty())
     throw top.error("settings", "are in the scene already", "add yours to that line of the file");
   top.texts("settings", settings);
@@ -283,7 +283,7 @@ Scene parse_scene(std::string_view text, const std::string& file, const SceneSet
   toml::table table = parse_toml(text, file);
   if (table.empty()) throw input_error(file, 0, "is an empty scene:", "it holds no keys", "see cases/ for examples");
   apply_settings(table, file, settings);
-  read_top(TomlReader(table, file, ""), scene);
+  read_top(TomlReader(table, file), scene);
   return scene;
 }
 
@@ -292,10 +292,17 @@ Scene read_scene(const std::string& path, const SceneSettings& settings) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
   for (std::size_t k = 0; k < scene.boundary.meshes.size(); ++k) {
     auto& mesh = scene.boundary.meshes[k];
+    const auto error = [&](std::string_view rule, std::string_view remedy = {}) {
+      return scene_error(scene, fmt::format("boundary.mesh[{}].file", k),
+                         fmt::format("boundary.mesh[{}].file = \"{}\"", k + 1, mesh.path), rule, remedy);
+    };
     if (!std::filesystem::exists(resolve_path(scene, mesh.path)))
-      throw scene_error(scene, fmt::format("boundary.mesh[{}].file", k), fmt::format("file = \"{}\"", mesh.path),
-                        "of [[boundary.mesh]] is not there", "paths start from the folder of the scene");
-    read_mesh_file(mesh, folder);
+      throw error("names a file that is not there", "paths start from the folder of the scene");
+    try {
+      read_mesh_file(mesh, folder);
+    } catch (const InputError& e) {
+      throw error(fmt::format("cannot be a wall: {}", e.what()));
+    }
   }
   return scene;
 }

@@ -29,6 +29,10 @@ std::string listed(const std::vector<std::string>& names) {
   return fmt::format("{}", fmt::join(all, ", "));
 }
 
+std::string joined(const std::string& path, std::string_view key) {
+  return path.empty() || key.empty() ? path + std::string(key) : fmt::format("{}.{}", path, key);
+}
+
 long line_of(const toml::node& node) { return static_cast<long>(node.source().begin.line); }
 
 }  // namespace
@@ -51,21 +55,12 @@ InputError one_line_error(std::string_view file, long line, std::string_view sub
   return InputError(text);
 }
 
-std::string TomlReader::full(std::string_view key) const {
-  if (path_.empty() || key.empty()) return path_ + std::string(key);
-  return fmt::format("{}.{}", path_, key);
-}
+std::string TomlReader::full(std::string_view key) const { return joined(name_.path, key); }
+
+std::string TomlReader::header(std::string_view key) const { return joined(name_.header, key); }
 
 std::string TomlReader::element(std::string_view key, std::size_t k) const {
   return fmt::format("{}[{}]", full(key), k + 1);
-}
-
-std::string TomlReader::place() const {
-  if (path_.empty()) return "the top of the file";
-  if (!path_.ends_with(']')) return fmt::format("[{}]", path_);
-  const auto bracket = path_.rfind('[');  // an array of tables, as the file has it
-  return fmt::format("[[{}]] number {}", path_.substr(0, bracket),
-                     path_.substr(bracket + 1, path_.size() - bracket - 2));
 }
 
 InputError TomlReader::error_at(const toml::node& node, std::string_view subject, std::string_view rule,
@@ -100,7 +95,8 @@ const toml::node* TomlReader::find(std::string_view key, Need need) const {
     if (!known_.contains(other.str())) left_over.emplace_back(other.str());
   if (const auto misspelt = nearest(key, left_over); !misspelt.empty())
     throw unknown(misspelt, fmt::format("did you mean \"{}\"?", key));
-  throw one_line_error(file_, line_of(*table_), full(key), "is missing", fmt::format("add \"{}\" to {}", key, place()));
+  throw one_line_error(file_, line_of(*table_), full(key), "is missing",
+                       fmt::format("add \"{}\" to {}", key, name_.place));
 }
 
 void TomlReader::finish() const {
@@ -256,23 +252,27 @@ std::optional<TomlReader> TomlReader::table(std::string_view key, Need need) con
   if (!node) return {};
   if (!node->is_table())
     throw error(key, "must be a table",
-                path_.ends_with(']') ? fmt::format("write {} = {{ … }}", key)
-                                     : fmt::format("write [{0}] or {0} = {{ … }}", full(key)));
-  return TomlReader(*node->as_table(), file_, full(key));
+                name_.in_array ? fmt::format("write {} = {{ … }}", key)
+                               : fmt::format("write [{0}] or {0} = {{ … }}", full(key)));
+  const std::string place =
+      name_.in_array ? fmt::format("{} of {}", key, name_.place) : fmt::format("[{}]", header(key));
+  return TomlReader(*node->as_table(), file_, Name{full(key), header(key), place, name_.in_array});
 }
 
 std::vector<TomlReader> TomlReader::tables(std::string_view key) const {
   const toml::node* node = find(key);
   if (!node) return {};
   const toml::array* rows = node->as_array();
-  const std::string remedy = fmt::format("write [[{}]]", full(key));
+  const std::string remedy = fmt::format("write [[{}]]", header(key));
   if (!rows) throw error(key, "must be an array of tables", remedy);
   std::vector<TomlReader> all;
   for (std::size_t k = 0; k < rows->size(); ++k) {
     const toml::node& row = *rows->get(k);
     const std::string subject = element(key, k);
     if (!row.is_table()) throw error_at(row, subject, "must be a table", remedy);
-    all.emplace_back(*row.as_table(), file_, subject);
+    std::string place = fmt::format("[[{}]] number {}", header(key), k + 1);
+    if (name_.in_array) place += " of " + name_.place;
+    all.push_back(TomlReader(*row.as_table(), file_, Name{subject, header(key), place, true}));
   }
   return all;
 }

@@ -45,9 +45,8 @@ inline constexpr Range counting = closed(1, 1e15);  ///< whole numbers that a do
 /// line. finish(), called last, throws for keys that nobody asked for.
 class TomlReader {
  public:
-  /// `path` is the dotted name of the table in messages, "" for the file itself. The table must outlive the reader.
-  TomlReader(const toml::table& table, std::string file, std::string path)
-      : table_(&table), file_(std::move(file)), path_(std::move(path)) {}
+  /// Of the file itself. The table must outlive the reader.
+  TomlReader(const toml::table& table, std::string file) : table_(&table), file_(std::move(file)) {}
 
   /// Asking is enough to make a key known: a reader that chooses between keys asks for all of them first, so that
   /// messages about misspelt, missing and unknown keys know them all.
@@ -105,6 +104,15 @@ class TomlReader {
   void finish() const;
 
  private:
+  /// How messages name a table.
+  struct Name {
+    std::string path;                           ///< "stage[1].hold", as settings from outside take it; "": the file
+    std::string header;                         ///< "stage.hold", as in the file
+    std::string place = "the top of the file";  ///< "[contact]", "[[stage]] number 1" or "hold of [[stage]] number 1"
+    bool in_array = false;                      ///< it, or a table around it, is an element of an array
+  };
+  TomlReader(const toml::table& table, std::string file, Name name)
+      : table_(&table), file_(std::move(file)), name_(std::move(name)) {}
   const toml::node* find(std::string_view key) const;
   const toml::node* find(std::string_view key, Need) const;
   bool whole_number(std::string_view key, double& out, const Range&, Need) const;
@@ -112,7 +120,7 @@ class TomlReader {
   InputError unknown(std::string_view key, std::string_view remedy) const;
   std::string full(std::string_view key) const;
   std::string element(std::string_view key, std::size_t k) const;  ///< counted from 1
-  std::string place() const;                                       ///< "[contact]" or "the top of the file"
+  std::string header(std::string_view key) const;
   InputError error_at(const toml::node&, std::string_view subject, std::string_view rule,
                       std::string_view remedy = {}) const;
   double checked_number(const toml::node&, const std::string& subject, const Range&) const;
@@ -120,7 +128,8 @@ class TomlReader {
   std::string checked_choice(const toml::node&, const std::string& subject, const std::vector<std::string>&) const;
 
   const toml::table* table_;
-  std::string file_, path_;
+  std::string file_;
+  Name name_;
   mutable std::set<std::string, std::less<>> known_;  ///< keys asked for so far
 };
 

@@ -115,6 +115,14 @@ const std::vector<SceneCase> scene_cases{
     {19, "stress = { isotropic = \"100 kPa\" }",
      "s.toml:19: stage[1].stress.isotropic = \"100 kPa\" must be a number; write it in SI units, without quotes and "
      "without a unit"},
+    {19, "hold = { combinations = [{ stress = { x = 1 } }] }",
+     "s.toml:19: stage[1].hold.combinations[1].value is missing; add \"value\" to [[stage.hold.combinations]] number 1 "
+     "of hold of [[stage]] number 1"},
+    {19, "hold = { combinations = 3 }",
+     "s.toml:19: stage[1].hold.combinations = 3 must be an array of tables; write [[stage.hold.combinations]]"},
+    {19, "hold = { combinations = [{ stress = 1, value = 0 }] }",
+     "s.toml:19: stage[1].hold.combinations[1].stress = 1 must be a table; write stress = { … }"},
+    {19, "bond = {}", "s.toml:19: stage[1].bond.gap is missing; add \"gap\" to bond of [[stage]] number 1"},
     {19, "stress = 100e3", "s.toml:19: stage[1].stress = 100000 must be a table; write stress = { … }"},
     {1, "dimension = 3\ngravity = [0, 0, -9.81]",
      "s.toml:2: gravity has no ground in a cell that is periodic in every direction: grains would fall forever; leave "

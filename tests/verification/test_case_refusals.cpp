@@ -76,6 +76,38 @@ TEST_F(Refusals, SpecimenThatCannotBeMade) {
   EXPECT_TRUE(answer.text.starts_with(full + ":9: specimen: cloud of 100 grains: solid fraction 0.69")) << answer.text;
 }
 
+TEST_F(Refusals, MeshesThatAreNoWalls) {
+  const std::string path = write("m.toml",
+                                 "dimension = 3\n[material.a]\nshear_modulus = 29e9\npoisson = 0.12\ndensity = 2650\n"
+                                 "friction = 0.3\n[contact]\nlaw = \"hertz-mindlin\"\n[specimen]\n" +
+                                     cloud +
+                                     "\n[boundary]\ntype = \"free\"\n[[boundary.mesh]]\nname = \"cone\"\n"
+                                     "file = \"cone.stl\"\n[[stage]]\nname = \"fall\"\nuntil = { steps = 1 }\n");
+  const std::string stl = file("cone.stl"), where = path + ":17: boundary.mesh[1].file = \"cone.stl\" ";
+  const auto expect = [&](const std::string& fault) {
+    expect_line("run " + path + " --out " + file("out"), where + fault);
+    EXPECT_FALSE(std::filesystem::exists(file("out")));
+  };
+  expect("names a file that is not there; paths start from the folder of the scene");
+
+  const std::string wall = "cannot be a wall: " + stl + ": ";
+  const std::string again = "; export the mesh again, as binary or ASCII STL";
+  write("cone.stl", "o cone\nv 0 0 0\n");  // another format of meshes
+  expect(wall + "is no STL file: it is neither ASCII nor of the length its facets need" + again);
+  write("cone.stl", "solid cone\nendsolid cone\n");
+  expect(wall + "is no STL file: it holds no facets" + again);
+
+  // three sides of a tetrahedron
+  std::string sides = "solid cone\n";
+  for (const char* corners : {"0 0 0 0 1 0 1 0 0", "0 0 0 1 0 0 0 0 1", "0 0 0 0 0 1 0 1 0"}) {
+    std::istringstream in(corners);
+    for (std::string x, y, z; in >> x >> y >> z;) sides += "vertex " + x + " " + y + " " + z + "\n";
+  }
+  write("cone.stl", sides + "endsolid cone\n");
+  expect(wall + "facet 1 has an edge without a neighbour: the mesh has a hole; close it, or say open = true");
+  EXPECT_EQ(ask("info " + path + " --set boundary.mesh[1].open=true").status, 0);
+}
+
 TEST_F(Refusals, OptionsMisspelt) {
   expect_line("run --thread 2",
               "eigengrain: The following argument was not expected: --thread; did you mean \"--threads\"?; "
