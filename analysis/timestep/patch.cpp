@@ -4,8 +4,10 @@
 #include <utility>
 
 namespace eg {
+namespace {
 
-std::vector<Index> grow_patch(const Sides& sides, std::vector<Index> grains, int shells) {
+template <class Wanted>
+std::vector<Index> grow(const Sides& sides, std::vector<Index> grains, int shells, Wanted wanted) {
   std::vector<char> taken(sides.size(), 0);
   for (const Index g : grains) taken[g] = 1;
   std::size_t begin = 0;
@@ -16,21 +18,20 @@ std::vector<Index> grow_patch(const Sides& sides, std::vector<Index> grains, int
         if (side.role == Side::Role::alone) continue;
         const Spring& s = sides.network().springs[side.spring];
         const Index other = side.role == Side::Role::first ? s.j : s.i;
-        if (!std::exchange(taken[other], 1)) grains.push_back(other);
+        if (wanted(other) && !std::exchange(taken[other], 1)) grains.push_back(other);
       }
     begin = end;
   }
   return grains;
 }
 
-namespace {
-
 template <class Below>
-std::vector<Index> patch_of_others(const Sides& sides, const BlockRanges& ranges, int shells, Below below) {
+std::vector<Index> patch_of_others(const Sides& sides, const BlockRanges& ranges, int shells, double least,
+                                   Below below) {
   std::vector<Index> grains;
   for (std::size_t g = 0; g < sides.size(); ++g)
     if (!sides.of(g).empty() && !below(g)) grains.push_back(static_cast<Index>(g));
-  grains = grow_patch(sides, std::move(grains), shells);
+  grains = grow(sides, std::move(grains), shells, [&](Index g) { return ranges.low[g] >= least; });
   std::sort(grains.begin(), grains.end(),
             [&](Index a, Index b) { return ranges.low[a] != ranges.low[b] ? ranges.low[a] > ranges.low[b] : a < b; });
   return grains;
@@ -38,13 +39,18 @@ std::vector<Index> patch_of_others(const Sides& sides, const BlockRanges& ranges
 
 }  // namespace
 
-std::vector<Index> stiff_patch(const Sides& sides, const BlockRanges& ranges, double sigma, int shells) {
-  return patch_of_others(sides, ranges, shells, [&](std::size_t g) { return ranges.high[g] < sigma; });
+std::vector<Index> grow_patch(const Sides& sides, std::vector<Index> grains, int shells) {
+  return grow(sides, std::move(grains), shells, [](Index) { return true; });
 }
 
-std::vector<Index> stiff_patch(const WeightedContacts& contacts, const BlockRanges& ranges, double sigma, int shells) {
+std::vector<Index> stiff_patch(const Sides& sides, const BlockRanges& ranges, double sigma, int shells) {
+  return patch_of_others(sides, ranges, shells, 0, [&](std::size_t g) { return ranges.high[g] < sigma; });
+}
+
+std::vector<Index> stiff_patch(const WeightedContacts& contacts, const BlockRanges& ranges, double sigma,
+                               const Shells& shells) {
   const Sides& sides = contacts.sides();
-  return patch_of_others(sides, ranges, shells, [&](std::size_t g) {
+  return patch_of_others(sides, ranges, shells.count, shells.least * sigma, [&](std::size_t g) {
     return ranges.high[g] < sigma ||
            (ranges.low[g] < sigma && block_is_below(contacts.block(g), sides.of(g).size(), sigma));
   });

@@ -23,8 +23,8 @@ class Search {
       : sides_(sides), options_(options), ranges_(weights.ranges), contacts_(sides, {weights.t, {}, {}}) {}
 
   UpperEnd run() {
-    if (split() || factorise(options_.width, 2, 0.5, drop, 2 * small) ||
-        factorise(options_.width, 2, 0.5, small_drop) || factorise(options_.loose, 2, 0.25, drop))
+    if (split() || factorise(options_.width, {2}, 0.5, drop, 2 * small) ||
+        factorise(options_.width, {2}, 0.5, small_drop) || factorise(options_.loose, {2}, 0.25, drop))
       return end_;
     improve();
     if (!(end_.value <= goal(options_.loose))) take(collatz_bound(sides_.network()).value, "block Collatz-Wielandt");
@@ -47,7 +47,7 @@ class Search {
 
   /// Incomplete Cholesky of what splitting leaves open at this width, if that is at most this share of the grains or
   /// `most` of them.
-  bool factorise(double width, int shells, double share, double fill, std::size_t most = small) {
+  bool factorise(double width, const Shells& shells, double share, double fill, std::size_t most = small) {
     const double sigma = goal(width);
     if (end_.value <= sigma) return true;
     const auto patch = stiff_patch(contacts_, ranges_, sigma, shells);
@@ -59,16 +59,21 @@ class Search {
     return true;
   }
 
-  /// Matrices for the contacts that scalars leave open, until splitting or a factorisation of the rest succeeds.
+  /// Matrices for the contacts that scalars leave open, until splitting or a factorisation of the rest succeeds, with
+  /// all neighbours of the open grains if these are few, else with the stiff ones.
   void improve() {
     for (int squarings = first_squaring; squarings <= last_squaring; ++squarings) {
       const double maximum = *std::max_element(ranges_.low.begin(), ranges_.low.end());
       contacts_.make_matrices(ranges_.low, hot * std::min(1.0, goal(options_.loose) / maximum));
       for (int k = 0; k < sweeps; ++k) contacts_.sweep(squarings);
       contacts_.update(ranges_);
-      const bool last = squarings == last_squaring;
-      if (factorise(options_.loose, 1, last ? 0.3 : 0.15, small_drop, last ? 2 * small : small)) return;
+      if (squarings < last_squaring)
+        for (const double least : {0.0, 0.97})
+          if (factorise(options_.loose, {1, least}, 0.15, small_drop, small / 2)) return;
     }
+    if (factorise(options_.loose, {1, 0.98}, 0.3, 2 * small_drop, 2 * small)) return;
+    for (const double least : {0.97, 0.0})
+      if (factorise(options_.loose, {1, least}, 0.3, small_drop, 2 * small)) return;
     split();
   }
 

@@ -23,8 +23,8 @@ TEST(RandomTest, TellsABoundFromWhatLiesAThousandthBelowTheEigenvalue) {
 }
 
 TEST(RandomTest, GivesACrystalOfScatteredRadiiTheWidthThatNoProofReaches) {
-  const Scene scene = test::lattice_scene("hertz-mindlin", "fcc", {6, 6, 6}, 0.01);
-  const Network network = linearise(scene, test::scattered_lattice(scene, 0.005));
+  const Scene scene = test::lattice_scene("hertz-mindlin", "fcc", {10, 10, 10}, 0.01);
+  const Network network = linearise(scene, test::scattered_lattice(scene, 0.002));
   const StepInterval interval = step_interval(network);
   const double lambda = step_interval(network, {.tolerance = 1e-9}).lambda_lower;
   ASSERT_GT(interval.probable_error, 0);

@@ -154,8 +154,12 @@ void refuses(const Network& network, double lambda, std::uint64_t seed) {
   for (int k = 0; k < 3; ++k) contacts.sweep(4);
   contacts.update(ranges);
   EXPECT_GE(contacts.bound(ranges).value, lambda * (1 - 1e-13)) << seed;
-  for (const double drop : {1e-4, 1e-2, 1.})
+  for (const double drop : {1e-4, 1e-2, 1.}) {
     EXPECT_FALSE(factorise_below(contacts, stiff_patch(sides, ranges, sigma, 1), sigma, drop).below) << seed;
+    for (const double least : {.9, .98})
+      EXPECT_FALSE(factorise_below(contacts, stiff_patch(contacts, ranges, sigma, {1, least}), sigma, drop).below)
+          << seed;
+  }
   EXPECT_FALSE(factorise_below(contacts, all_of(sides), sigma, 1e-3).below) << seed;
   EXPECT_FALSE(sparse_cholesky_below(network, sigma)) << seed;
   EXPECT_GE(collatz_bound(network).value, lambda * (1 - 1e-13)) << seed;
