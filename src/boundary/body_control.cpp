@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "measure/measure_sphere.hpp"
 #include "measure/volume.hpp"
+#include "state/gather.hpp"
 #include "state/wall_geometry.hpp"
 
 namespace eg {
@@ -216,6 +217,16 @@ void BodyControl::drive(State& state, double dt) const {
   }
 }
 
+/// Stored between grains and walls, and in the motion of bodies [J].
+static double energy_beside_grains(const Scene& scene, const State& state) {
+  double sum = 0;
+  visit_contacts(scene, state, [&](const ContactPoint& p) { sum += p.j == no_index ? p.normal_energy : 0; });
+  for (const auto& b : state.bodies)
+    for (int k = 0; k < 3; ++k)
+      sum += b.free[static_cast<std::size_t>(k)] ? 0.5 * b.mass * b.velocity[k] * b.velocity[k] : 0;
+  return sum;
+}
+
 /// Takes away all surfaces of these bodies.
 static void remove_walls(const std::vector<std::size_t>& bodies, State& state) {
   std::vector<Index> renumbered;
@@ -232,7 +243,11 @@ static void remove_walls(const std::vector<std::size_t>& bodies, State& state) {
 }
 
 void begin_body_stage(const Scene& scene, State& state) {
-  remove_walls(scene.stages[state.stage].removed, state);
+  if (const auto& removed = scene.stages[state.stage].removed; !removed.empty()) {
+    const double before = scene.energy ? energy_beside_grains(scene, state) : 0;
+    remove_walls(removed, state);
+    if (scene.energy) state.ledger.boundary += energy_beside_grains(scene, state) - before;  // it goes with them
+  }
   for (std::size_t b = 0; b < state.bodies.size(); ++b) {
     Body& body = state.bodies[b];
     const BodyDrive drive = drive_of(scene, state, b);

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <span>
 
 #include "base/error.hpp"
 #include "base/number.hpp"
+#include "search/hits.hpp"
 
 namespace eg {
 namespace {
@@ -144,14 +144,6 @@ void around(const Frame& frame, const Level& level, const Place& p, F&& f) {
     }
 }
 
-/// Lane k as bit k.
-unsigned bits(Mask m) {
-  if constexpr (sizeof(Mask) == 1) return std::bit_cast<std::array<std::uint8_t, sizeof(Mask)>>(m)[0];
-  unsigned all = 0;
-  for (std::size_t k = 0; k < Batch::lanes; ++k) all |= lane(m, k) ? 1u << k : 0u;
-  return all;
-}
-
 /// Items of a run of cells.
 struct Items {
   std::size_t begin, end;
@@ -170,9 +162,7 @@ EG_INLINE void visit(const Level& level, const Items& items, const Vec3& x, doub
   for (std::size_t m = items.begin; m < items.end; m += Batch::lanes) {
     const Batch dx = load_lanes(&level.x[m]) - Batch(x.x), dy = load_lanes(&level.y[m]) - Batch(x.y),
                 dz = load_lanes(&level.z[m]) - Batch(x.z), far = load_lanes(&level.r[m]) + Batch(reach);
-    unsigned hits = bits(dx * dx + dy * dy + dz * dz < far * far);
-    if (items.end - m < Batch::lanes) hits &= (1u << (items.end - m)) - 1;
-    for (; hits != 0; hits &= hits - 1) f(level.items[m + static_cast<std::size_t>(std::countr_zero(hits))]);
+    visit_hits(dx * dx + dy * dy + dz * dz < far * far, items.end - m, [&](std::size_t k) { f(level.items[m + k]); });
   }
 }
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/lanes.hpp"
 #include "search/grid.hpp"
+#include "search/hits.hpp"
 #include "search/spatial_sort.hpp"
 #include "search/wall_contacts.hpp"
 #include "state/friction.hpp"
@@ -79,45 +81,95 @@ void fill_rows(NeighbourList& list, std::vector<NearPair>& pairs, std::size_t gr
   }
 }
 
-/// Pairs of the list nearer than the skin of the contacts, and bonded ones however far they have moved apart, of the
-/// chunk's grains, in order; each with its place among the contacts so far. Returns how many.
-std::size_t find_entries(const State& state, std::size_t chunk, const std::array<Vec3, Cell::images>& shift,
-                         const std::vector<Index>& order, ListScratch::Entry* out) {
+/// Eight pairs of the list from place p on; after its end, copies of the last one.
+struct EightPairs {
+  std::array<Index, Batch::lanes> j;
+  std::array<std::uint8_t, Batch::lanes> image;
+
+  EightPairs(const NeighbourList& list, std::size_t p) {
+    const bool whole = p + Batch::lanes <= list.j.size(), periodic = !list.image.empty();
+    image.fill(Cell::home);
+    if (whole) {
+      std::copy_n(&list.j[p], Batch::lanes, j.begin());
+      if (periodic) std::copy_n(&list.image[p], Batch::lanes, image.begin());
+    } else {
+      for (std::size_t k = 0; k < Batch::lanes; ++k) {
+        const std::size_t q = std::min(p + k, list.j.size() - 1);
+        j[k] = list.j[q];
+        if (periodic) image[k] = list.image[q];
+      }
+    }
+  }
+};
+
+/// Pairs of a grain's row that are nearer than the skin of the contacts, in order, eight looked at at a time. `place`
+/// of each pair: its number among the chunk's contacts (the first of which is `first`), before and after; no_index for
+/// none.
+ListScratch::Entry* find_near(const State& state, std::size_t i, const std::array<Quad, Cell::images>& shift,
+                              std::size_t old_begin, std::vector<Index>& place, const ListScratch::Entry* first,
+                              ListScratch::Entry* out) {
   const NeighbourList& list = state.list;
-  const Contacts& old = state.contacts;
+  const Quad* position = state.grains.position.data();
+  const Quad a = position[i];
   const bool periodic = !list.image.empty();
+  const Batch skin(a.w + list.contact_skin);
+  const std::size_t end = list.begin[i + 1];
+  for (std::size_t p = list.begin[i]; p < end; p += Batch::lanes) {
+    const EightPairs pairs(list, p);
+    Double8 rows[4];
+    for (std::size_t k = 0; k < 4; ++k) {
+      rows[k] = row_pair(position, pairs.j[k], pairs.j[k + 4]);
+      if (periodic) rows[k] += row_pair(shift.data(), pairs.image[k], pairs.image[k + 4]);
+    }
+    const QuadColumns b = transpose_rows(rows);
+    const Batch dx = b.x - Batch(a.x), dy = b.y - Batch(a.y), dz = b.z - Batch(a.z), reach = b.w + skin;
+    const std::size_t count = std::min(Batch::lanes, end - p);
+    std::array<Index, Batch::lanes> old;
+    std::copy_n(&place[p], count, old.begin());
+    std::fill_n(&place[p], count, no_index);
+    visit_hits(dx * dx + dy * dy + dz * dz < reach * reach, count, [&](std::size_t k) {
+      const Index before = old[k] == no_index ? no_index : static_cast<Index>(old_begin + old[k]);
+      place[p + k] = static_cast<Index>(out - first);
+      *out++ = {static_cast<Index>(i), pairs.j[k], before, pairs.image[k]};
+    });
+  }
+  return out;
+}
+
+/// Looks up the places of a row's entries [row, end) among the contacts so far, whose order says where to go on; bonded
+/// contacts that are not among them are kept, however far they have moved apart. Returns where the next entry goes.
+template <class Place>
+ListScratch::Entry* match_row(const Contacts& old, std::size_t i, Place& o, Place last, ListScratch::Entry* row,
+                              ListScratch::Entry* end) {
+  auto *next = row, *out = end;
+  for (; o != last && old.i[*o] == i; ++o) {
+    const auto key = Key{old.i[*o], old.j[*o], old.image_of(*o)};
+    while (next != end && Key{next->i, next->j, next->image} < key) ++next;
+    if (next != end && Key{next->i, next->j, next->image} == key)
+      next++->old = *o;
+    else if (old.is_bonded(*o))
+      *out++ = {old.i[*o], old.j[*o], *o, old.image_of(*o)};
+  }
+  if (out != end)
+    std::inplace_merge(row, end, out, [](const auto& x, const auto& y) {
+      return Key{x.i, x.j, x.image} < Key{y.i, y.j, y.image};
+    });
+  return out;
+}
+
+/// The new contacts of a chunk's grains, in order, each with its place among the contacts so far: known from the pair's
+/// (`matched`) or looked for by `order`. Returns how many.
+std::size_t find_entries(const State& state, std::size_t chunk, const std::array<Quad, Cell::images>& shift,
+                         bool matched, ListScratch& scratch, ListScratch::Entry* first) {
+  const Contacts& old = state.contacts;
   const std::size_t low = chunk * Contacts::chunk, high = std::min(state.grains.size(), low + Contacts::chunk);
-  auto* const first = out;
-  auto o = std::ranges::lower_bound(order, low, {}, [&](Index c) { return std::size_t{old.i[c]}; });
-  const auto keep_bonded = [&](Index c) {
-    if (old.is_bonded(c)) *out++ = {old.i[c], old.j[c], c, old.image_of(c)};
-  };
+  const std::size_t old_begin = matched ? old.chunk_begin[chunk] : 0;
+  auto* out = first;
+  auto o = std::ranges::lower_bound(scratch.order, low, {}, [&](Index c) { return std::size_t{old.i[c]}; });
   for (std::size_t i = low; i < high; ++i) {
-    const Quad a = state.grains.position[i];
-    auto* const row = out;  // of this grain, old places still unknown
-    for (std::size_t p = list.begin[i]; p < list.begin[i + 1]; ++p) {
-      const Index j = list.j[p];
-      const std::uint8_t image = periodic ? list.image[p] : Cell::home;
-      const Quad& b = state.grains.position[j];
-      const Vec3 branch = b.vec() + shift[image] - a.vec();
-      const double reach = a.w + b.w + list.contact_skin;
-      *out = {static_cast<Index>(i), j, no_index, image};
-      out += dot(branch, branch) < reach * reach;  // which way it goes is anybody's guess: no branch
-    }
-    auto* const end = out;
-    auto* next = row;
-    for (; o != order.end() && old.i[*o] == i; ++o) {
-      const auto key = Key{old.i[*o], old.j[*o], old.image_of(*o)};
-      while (next != end && Key{next->i, next->j, next->image} < key) ++next;
-      if (next != end && Key{next->i, next->j, next->image} == key)
-        next++->old = *o;
-      else
-        keep_bonded(*o);
-    }
-    if (out != end)
-      std::inplace_merge(row, end, out, [](const auto& x, const auto& y) {
-        return Key{x.i, x.j, x.image} < Key{y.i, y.j, y.image};
-      });
+    auto* const row = out;
+    out = find_near(state, i, shift, old_begin, scratch.place, first, out);
+    if (!matched) out = match_row(old, i, o, scratch.order.end(), row, out);
   }
   return static_cast<std::size_t>(out - first);
 }
@@ -156,9 +208,16 @@ void refresh_contacts(State& state, ListScratch& scratch) {
   const Contacts& old = state.contacts;
   const std::size_t n = state.grains.size(), chunks = (n + Contacts::chunk - 1) / Contacts::chunk;
   const bool periodic = !list.image.empty();
-  sorted_order(old, scratch.order);
-  std::array<Vec3, Cell::images> shift;
-  for (std::size_t c = 0; c < Cell::images; ++c) shift[c] = state.cell.shift(static_cast<std::uint8_t>(c));
+  // Places of pairs hold as long as nobody else has touched the lists; bonded contacts may have left the list.
+  const bool matched = scratch.made == std::pair{list.builds, list.refreshes} && old.bond_value == 0 &&
+                       !scratch.place.empty() && scratch.place.size() == list.j.size();
+  scratch.order.clear();
+  if (!matched) {
+    sorted_order(old, scratch.order);
+    scratch.place.assign(list.j.size(), no_index);
+  }
+  std::array<Quad, Cell::images> shift{};
+  for (std::size_t c = 0; c < Cell::images; ++c) shift[c].set(state.cell.shift(static_cast<std::uint8_t>(c)));
 
   const auto room = [&](std::size_t grain) {  // where entries from this grain on may begin, bonded ones included
     const std::size_t bonded =
@@ -173,7 +232,8 @@ void refresh_contacts(State& state, ListScratch& scratch) {
   scratch.count.resize(chunks);
 #pragma omp parallel for schedule(dynamic) if (chunks >= Contacts::worth_threads)
   for (std::size_t k = 0; k < chunks; ++k)
-    scratch.count[k] = find_entries(state, k, shift, scratch.order, scratch.entries.data() + room(k * Contacts::chunk));
+    scratch.count[k] =
+        find_entries(state, k, shift, matched, scratch, scratch.entries.data() + room(k * Contacts::chunk));
 
   constexpr std::size_t lanes = Contacts::lanes;
   Contacts& fresh = scratch.contacts;
@@ -199,6 +259,7 @@ void refresh_contacts(State& state, ListScratch& scratch) {
   state.list.reference_cell = state.cell.h;
   state.list.grown = 0;
   ++state.list.refreshes;
+  scratch.made = {list.builds, list.refreshes};
   refresh_wall_contacts(state);
 }
 
@@ -206,6 +267,7 @@ void rebuild_neighbours(State& state, double skin, double contact_skin, ListScra
   wrap(state);
   if (state.list.builds % sort_period == 0) sort_grains(state);
   auto pairs = find_pairs(state.grains, state.cell, skin);
+  scratch.place.clear();  // the pairs go elsewhere
   auto& list = state.list;
   list.skin = skin, list.contact_skin = contact_skin;
   fill_rows(list, pairs, state.grains.size(), state.cell.any_periodic());
@@ -214,6 +276,7 @@ void rebuild_neighbours(State& state, double skin, double contact_skin, ListScra
   refresh_contacts(state, scratch);
   list.used = 0;
   ++list.builds;
+  scratch.made.first = list.builds;
 }
 
 namespace {
@@ -236,9 +299,11 @@ bool outdated(const State& state, const Travel& travel) {
   return travel.most + beside + walls > wall_skin(list);
 }
 
+constexpr double widest_contact_skin = 0.22;  // of the skin: some four refreshes between rebuilds in fast flow
+
 /// A wide skin makes the force loop take pairs that do not touch, a narrow one makes refreshes frequent.
 static void fit_contact_skin(NeighbourList& list, std::uint64_t life) {
-  if (life < 150) list.contact_skin = std::min(1.25 * list.contact_skin, 0.25 * list.skin);
+  if (life < 150) list.contact_skin = std::min(1.25 * list.contact_skin, widest_contact_skin * list.skin);
   if (life > 600) list.contact_skin = std::max(0.8 * list.contact_skin, 0.01 * list.skin);
 }
 
@@ -247,8 +312,9 @@ static void fit_contact_skin(NeighbourList& list, std::uint64_t life) {
 static double fitted_skin(const State& state, std::uint64_t life) {
   const auto& list = state.list;
   const double usual = default_skins(state)[0];
-  if (life > 300 || list.contact_skin < 0.24 * list.skin) return std::max(0.8 * list.skin, std::min(list.skin, usual));
-  double widest = 5 * usual;
+  if (life > 300 || list.contact_skin < 0.96 * widest_contact_skin * list.skin)
+    return std::max(0.8 * list.skin, std::min(list.skin, usual));
+  double widest = 7 * usual;
   for (int k = 0; k < 3; ++k)
     if (state.cell.periodic[static_cast<std::size_t>(k)])
       widest = std::min(widest, 0.5 * (state.cell.width(k) - (list.longest - list.skin)));

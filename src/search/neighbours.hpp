@@ -1,6 +1,8 @@
 #pragma once
 // Neighbour search on a hierarchical grid, and the upkeep of the two lists: pairs within reach (NeighbourList, remade
 // rarely) and contacts (Contacts, refreshed from them more often, keeping history).
+#include <utility>
+
 #include "search/travel.hpp"
 
 namespace eg {
@@ -12,10 +14,12 @@ struct ListScratch {
     Index old;  ///< its place in the old ones, or no_index
     std::uint8_t image;
   };
-  std::vector<Index> order;        ///< of the old contacts
-  std::vector<Entry> entries;      ///< chunk after chunk, with gaps
-  std::vector<std::size_t> count;  ///< of the entries of a chunk
-  Contacts contacts;               ///< changes places with State::contacts
+  std::vector<Index> order;                        ///< of the old contacts
+  std::vector<Index> place;                        ///< of a listed pair among its chunk's contacts, or no_index, …
+  std::pair<std::uint64_t, std::uint64_t> made{};  ///< … since the list's builds and refreshes were these
+  std::vector<Entry> entries;                      ///< chunk after chunk, with gaps
+  std::vector<std::size_t> count;                  ///< of the entries of a chunk
+  Contacts contacts;                               ///< changes places with State::contacts
 };
 
 /// Remakes both lists from positions: wraps grains into the cell, finds every pair with gap < skin, refreshes contacts.

@@ -61,6 +61,25 @@ void add_if_near(const State& state, Index wall_index, Index grain, std::vector<
     report_lost(state, grain, wall_index);
 }
 
+/// Grains near planes and cylinders, wall by wall, by their number. One look at a grain is enough for all walls, and
+/// most are far from any plane, which its normal alone tells.
+std::vector<std::vector<WallContact>> near_surfaces(const State& state) {
+  std::vector<std::vector<WallContact>> near(state.walls.size());
+  std::vector<Index> surfaces;
+  for (Index w = 0; w < state.walls.size(); ++w)
+    if (state.walls[w].shape < Wall::face) surfaces.push_back(w);
+  const double skin = wall_skin(state.list);
+  for (Index g = 0; g < state.grains.size() && !surfaces.empty(); ++g) {
+    const Quad p = state.grains.position[g];
+    for (const Index w : surfaces) {
+      const Wall& wall = state.walls[w];
+      if (wall.shape == Wall::plane && dot(p.vec() - wall.point, wall.normal) > p.w + skin) continue;
+      add_if_near(state, w, g, near[w]);
+    }
+  }
+  return near;
+}
+
 struct Extent {
   Vec3 low, high;
 };
@@ -127,12 +146,13 @@ void refresh_wall_contacts(State& state) {
   std::vector<WallContact> fresh;
   const bool meshes = std::ranges::any_of(state.walls, [](const Wall& w) { return w.shape >= Wall::face; });
   const ByX by_x(meshes ? state.grains : Grains{});
+  const auto near = near_surfaces(state);
   for (Index w = 0; w < state.walls.size(); ++w) {
     state.walls[w].moved = 0;
     if (state.walls[w].shape >= Wall::face)
       add_near_part(state, w, by_x, fresh);
     else
-      for (Index g = 0; g < state.grains.size(); ++g) add_if_near(state, w, g, fresh);
+      fresh.insert(fresh.end(), near[w].begin(), near[w].end());
   }
   check_kept(state);
   const auto less = [](const WallContact& a, const WallContact& b) {

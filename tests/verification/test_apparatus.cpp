@@ -182,6 +182,28 @@ TEST(Ledger, ClosesWithWallsServoAndRings) {
   }
 }
 
+TEST(Ledger, WallsThatAreRemovedTakeTheirEnergyAlong) {
+  const Scene scene = parse_scene(grains + box + load +
+                                      "[[stage]]\nname = \"open\"\nremove = [\"x_low\", \"x_high\"]\n"
+                                      "until = { steps = 200 }\n",
+                                  "a.toml");
+  State state = test::state_of(scene);
+  double stored = 0;
+  EnergyTable before;
+  RunObserver observer;
+  observer.stage_end = [&](const State& s, const StageSpec& stage) {
+    if (stage.name != "load") return;
+    before = energies(scene, s);
+    visit_contacts(scene, s, [&](const ContactPoint& p) {
+      const auto shut = [&](const char* name) { return scene.boundary.bodies[s.walls[p.wall].body].name == name; };
+      if (p.j == no_index && (shut("x_low") || shut("x_high"))) stored += p.normal_energy;
+    });
+  };
+  run(scene, state, observer);
+  ASSERT_GT(stored, 0.05 * before.normal);
+  EXPECT_NEAR(energies(scene, state).residual, before.residual, 0.02 * stored);
+}
+
 TEST(Glue, GrainsMoveWithTheirPlaten) {
   const Scene scene = parse_scene(
       grains + box + load + "[[stage]]\nname = \"shear\"\nglue = [\"z_low\", \"z_high\"]\nlocal_damping = 0.4\n" +
