@@ -45,8 +45,8 @@ std::size_t upkeep_bytes(State s) {
   ListScratch scratch;
   rebuild_neighbours(s, s.list.skin, s.list.contact_skin, scratch);
   const Contacts& c = scratch.contacts;
-  return bytes_of(scratch.order) + bytes_of(scratch.entries) + bytes_of(scratch.count) + bytes_of(c.i) + bytes_of(c.j) +
-         bytes_of(c.image) + bytes_of(c.history) + bytes_of(c.friction);
+  return bytes_of(scratch.order) + bytes_of(scratch.place) + bytes_of(scratch.entries) + bytes_of(scratch.count) +
+         bytes_of(c.i) + bytes_of(c.j) + bytes_of(c.image) + bytes_of(c.history) + bytes_of(c.friction);
 }
 
 std::vector<ArraySize> arrays_of(const State& s, const ForceWorkspace& w) {
