@@ -40,7 +40,7 @@ class Factorisation {
   const WeightedContacts& contacts_;
   const Sides& sides_;
   std::span<const Index> patch_;
-  double sigma_, drop_;
+  double drop_;
   std::vector<Tile> diagonal_;
   std::vector<double> least_;  ///< entry of the diagonal of a grain's block
   std::vector<double> given_;  ///< what drops have taken from the diagonal of a grain's block
@@ -58,7 +58,6 @@ Factorisation::Factorisation(const WeightedContacts& contacts, std::span<const I
     : contacts_(contacts),
       sides_(contacts.sides()),
       patch_(patch),
-      sigma_(sigma),
       drop_(drop),
       diagonal_(patch.size()),
       least_(patch.size()),

@@ -15,9 +15,8 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr std::size_t lanes = Batch::lanes;
-constexpr double reach = 5;        // a sweep moves ln T by reach/(q + 1) of what it wishes, ...
-constexpr double farthest = 0.25;  // ... no more than this,
-constexpr double momentum = 0.3;   // and by this share of its last motion; more of any of the three diverges
+constexpr double farthest = 0.25;  // a sweep moves ln T by no more than this,
+constexpr double momentum = 0.3;   // and by this share of its last motion; more of either diverges
 constexpr double widest = 2000;  // largest entry of a T or T⁻¹ in use, about: beyond it a contact is one-sided anyway
 
 std::size_t groups_of(std::size_t count) { return (count + lanes - 1) / lanes; }

@@ -88,6 +88,41 @@ EG_INLINE Vec<S> turn(const Vec<S>& old, const Vec<S>& n, const S& twist) {
   return turned * rsqrt_near_one(out * out * wider - square);
 }
 
+/// What a history holds.
+template <class Law, class S>
+EG_INLINE Held<S> held(const ContactHistory<Law, S>& h) {
+  if constexpr (HasCouples<Law>) return Law::template held<S>(h);
+  return {history_vector(h, 0)};
+}
+
+/// The slip by rotation that n and the arms of the last step would have given, less that of the new ones [m].
+/// `curvature`: by how much n turns for a motion across it [1/m].
+template <class S>
+EG_INLINE Vec<S> change_of_roll(const Geometry<S>& g, const Motion<S>& m, const Increment<S>& inc, const S& curvature,
+                                Arms arms) {
+  const Vec<S> turned = (m.translation + g.n * inc.approach) * curvature;  // what n was turned by
+  const Vec<S> change = cross(m.roll - m.turn * g.shorten, turned);
+  if (arms == Arms::surface) return change;
+  return change - cross(m.turn, g.n) * (S(0.5) * inc.approach);
+}
+
+/// What `before` did in the increment where it acted, in the plane and at the arms of the last step, less what it would
+/// have done where it was turned to [J]. Works by the trapezoidal rule need it to be of second order in the step.
+template <bool rotation, bool couples, class S>
+EG_INLINE S work_of_turning(const Held<S>& before, const Geometry<S>& g, const Motion<S>& m, const Increment<S>& inc,
+                            const S& curvature, Arms arms) {
+  S work = -inc.approach * curvature * dot(before.shear, m.translation);
+  if constexpr (rotation)
+    work = work + dot(before.shear, change_of_roll(g, m, inc, curvature, arms)) -
+           inc.twist * dot(cross(g.n, before.shear), inc.slip);
+  if constexpr (couples)
+    work =
+        work +
+        curvature * (inc.torsion * dot(before.couple, m.translation) - before.torsion * dot(m.translation, inc.bend)) -
+        inc.twist * dot(cross(g.n, before.couple), inc.bend);
+  return work;
+}
+
 /// Contact dashpots: ratio ξ of critical damping of the pair, 2ξ√(m* k); zero is off.
 template <class S>
 struct Dashpot {
@@ -98,12 +133,12 @@ struct Dashpot {
 
 template <class S>
 struct ContactForce {
-  Vec<S> on_j;          ///< f [N]
-  Vec<S> moment;        ///< n × T [N]; times the arm: moment on each grain
-  Vec<S> couple{};      ///< M [N m], on i as +M and on j as −M; of laws with couples
-  Response<S> law;      ///< the law's own part, without dashpots
-  Vec<S> shear_before;  ///< T of the last step, turned into the new plane [N]
-  Vec<S> dashpot;       ///< the dashpots' part of on_j [N]
+  Vec<S> on_j;      ///< f [N]
+  Vec<S> moment;    ///< n × T [N]; times the arm: moment on each grain
+  Vec<S> couple{};  ///< M [N m], on i as +M and on j as −M; of laws with couples
+  Response<S> law;  ///< the law's own part, without dashpots
+  Held<S> before;   ///< what the history held
+  Vec<S> dashpot;   ///< the dashpots' part of on_j [N]
 };
 
 /// Force of one contact. `touching` masks lanes that overlap; history of the others is cleared, unless a bond holds.
@@ -117,7 +152,7 @@ EG_INLINE ContactForce<S> interact(const typename Law::template Pair<S>& pair, c
   for (std::size_t k = 0; k < Law::history_vectors; ++k)
     set_history_vector(history, k, turn(history_vector(history, k), g.n, inc.twist));
   ContactForce<S> out;
-  if constexpr (Law::history_vectors > 0) out.shear_before = history_vector(history, 0);
+  if constexpr (Law::history_vectors > 0) out.before = held<Law, S>(history);
   out.law = Law::template respond<S>(pair, strain, history);
   for (auto& h : history) h = select(touching, h, S(0.0));
 

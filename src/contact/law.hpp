@@ -60,6 +60,14 @@ struct Response {
   S pulled{}, cut{};  ///< 1 when the bond breaks by tension or by shear
 };
 
+/// Forces across n and couples that the history of a contact holds.
+template <class S>
+struct Held {
+  Vec<S> shear;     ///< T [N]
+  Vec<S> couple{};  ///< M across n [N m], of laws with couples
+  S torsion{};      ///< likewise about n
+};
+
 /// A contact at rest: what K, the measures and the energies need of it.
 struct Standing {
   NormalResponse<double> normal{};   ///< N, kn, kt, those of a bond included
@@ -94,7 +102,8 @@ concept ContactLaw = requires(const Material& m, const typename L::template Cons
   { L::template respond<double>(p, s, h) } -> std::same_as<Response<double>>;
 };
 
-/// A law that resists rotation of one grain against the other; at_rest(pair, overlap, history) gives its Standing.
+/// A law that resists rotation of one grain against the other; at_rest(pair, overlap, history) gives its Standing,
+/// held(history) what the history holds.
 template <class L>
 concept HasCouples = requires {
   requires L::couples;

@@ -132,6 +132,11 @@ struct LinearParallelBond {
     return r;
   }
 
+  template <class S>
+  EG_INLINE static Held<S> held(const std::array<S, 12>& h) {
+    return {history_vector(h, 0) + history_vector(h, 1), history_vector(h, 2), h[11]};
+  }
+
   static Standing at_rest(const Pair<double>& p, double overlap, const std::array<double, 12>& h) {
     Standing s;
     if (overlap > 0) s = standing_springs<LinearParallelBond>(p, overlap, history_vector(h, 0));

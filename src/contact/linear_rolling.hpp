@@ -55,6 +55,11 @@ struct LinearRolling {
     return r;
   }
 
+  template <class S>
+  EG_INLINE static Held<S> held(const std::array<S, 6>& h) {
+    return {history_vector(h, 0), history_vector(h, 1), S(0.0)};
+  }
+
   static Standing at_rest(const Pair<double>& p, double overlap, const std::array<double, 6>& h) {
     Standing s = standing_springs<LinearRolling>(p, overlap, history_vector(h, 0));
     const Vec3 couple = history_vector(h, 1);

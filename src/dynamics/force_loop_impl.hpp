@@ -177,8 +177,11 @@ class ForceLoopOf final : public ForceLoop {
     add_stress(sums, branch, f, touching);
     if (options.tally == TallyLevel::stress) return;
     add_works(sums, inc, f, touching);
+    const S curvature = reciprocal(max(sum - g.overlap, S(1e-300)));
+    add_turning(sums, f, g, motion, inc, curvature, options.arms);
     if (options.viscous_history)
-      sums.viscous = sums.viscous + viscous_work(stored + history.size() * Contacts::lanes, Contacts::lanes, g, inc, f);
+      sums.viscous = sums.viscous + viscous_work(stored + history.size() * Contacts::lanes, Contacts::lanes, g, motion,
+                                                 inc, f, curvature, options.arms);
   }
 
   /// Component by component: g++ copies the struct in halves, through memory.
@@ -209,7 +212,7 @@ class ForceLoopOf final : public ForceLoop {
     if constexpr (HasCouples<Law>) {
       sums.shear_work = sums.shear_work + f.law.work, sums.friction = sums.friction + f.law.loss;
     } else if constexpr (Law::history_vectors > 0) {
-      const Vec<S> mean = (f.law.shear + f.shear_before) * S(0.5);  // trapezoidal rule over the increment
+      const Vec<S> mean = (f.law.shear + f.before.shear) * S(0.5);  // trapezoidal rule over the increment
       sums.shear_work = sums.shear_work + dot(mean, inc.slip);
       const S slid = dot(mean, f.law.unslipped - f.law.shear);
       const S kt = f.law.normal.tangential;
@@ -217,15 +220,25 @@ class ForceLoopOf final : public ForceLoop {
     }
   }
 
+  template <class S>
+  EG_INLINE static void add_turning(Sums<S>& sums, const ContactForce<S>& f, const Geometry<S>& g,
+                                    const Motion<S>& motion, const Increment<S>& inc, const S& curvature, Arms arms) {
+    if constexpr (Law::history_vectors > 0)
+      sums.shear_work =
+          sums.shear_work + S(0.5) * work_of_turning<rotation, couples>(f.before, g, motion, inc, curvature, arms);
+  }
+
   /// Work on the dashpots by the trapezoidal rule; their last force is kept at `stored` (three values, `stride` apart).
   template <class S>
-  EG_INLINE static S viscous_work(double* stored, std::size_t stride, const Geometry<S>& g, const Increment<S>& inc,
-                                  const ContactForce<S>& f) {
-    Vec<S> mean{load_values<S>(stored), load_values<S>(stored + stride), load_values<S>(stored + 2 * stride)};
+  EG_INLINE static S viscous_work(double* stored, std::size_t stride, const Geometry<S>& g, const Motion<S>& motion,
+                                  const Increment<S>& inc, const ContactForce<S>& f, const S& curvature, Arms arms) {
+    const Vec<S> old{load_values<S>(stored), load_values<S>(stored + stride), load_values<S>(stored + 2 * stride)};
     store_values(stored, f.dashpot.x), store_values(stored + stride, f.dashpot.y),
         store_values(stored + 2 * stride, f.dashpot.z);
-    mean = (mean + f.dashpot) * S(0.5);
-    return dot(mean, g.n) * inc.approach - dot(mean, inc.slip);
+    const Vec<S> mean = (old + f.dashpot) * S(0.5);
+    const S work = dot(mean, g.n) * inc.approach - dot(mean, inc.slip);
+    if constexpr (rotation) return work - S(0.5) * dot(old, change_of_roll(g, motion, inc, curvature, arms));
+    return work;
   }
 
   template <class S>
@@ -291,7 +304,9 @@ Tally ForceLoopOf<Law, rotation>::walls(State& state, ForceWorkspace& work, doub
       continue;
     }
     add_works(sums, inc, f, g.overlap > 0);
-    if (options.viscous_history) sums.viscous = viscous_work<double>(c.history.data() + history.size(), 1, g, inc, f);
+    add_turning(sums, f, g, motion, inc, 0.0, options.arms);
+    if (options.viscous_history)
+      sums.viscous = viscous_work<double>(c.history.data() + history.size(), 1, g, motion, inc, f, 0.0, options.arms);
     tally += finish(sums);
   }
   return tally;
