@@ -15,8 +15,6 @@ std::size_t Schedule::first_chunk(std::size_t thread, std::size_t threads) const
 void make_schedule(Schedule& out, std::size_t grains, std::size_t chunk, std::span<const Index> j,
                    std::span<const std::uint64_t> chunk_begin) {
   const std::size_t chunks = chunk_begin.size() - 1;
-  out.first_source.resize(chunks);
-  for (std::size_t k = 0; k < chunks; ++k) out.first_source[k] = static_cast<Index>(k);
   out.pair_begin.assign(chunk_begin.begin(), chunk_begin.end());
   out.grains = grains;
   out.target.assign(j.begin(), j.end());
@@ -32,8 +30,6 @@ void make_schedule(Schedule& out, std::size_t grains, std::size_t chunk, std::sp
       if (row_of[grain] == no_index) {
         row_of[grain] = static_cast<Index>(grains + owner.size());
         owner.push_back(grain);
-        Index& source = out.first_source[std::min(chunks - 1, grain / chunk)];
-        source = std::min(source, static_cast<Index>(k));
       }
       out.target[c] = row_of[grain];
     }

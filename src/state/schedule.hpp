@@ -18,7 +18,6 @@ struct Schedule {
   std::vector<Index> gather_begin;  ///< entries of chunk k: [gather_begin[k], gather_begin[k+1]), sorted by grain
   std::vector<Index> gather_grain;  ///< grain of an entry, and the halo row to add to it
   std::vector<Index> gather_row;
-  std::vector<Index> first_source;        ///< first chunk with a pair whose j lies in chunk k (k itself if none)
   std::vector<std::uint64_t> pair_begin;  ///< pairs of chunk k: [pair_begin[k], pair_begin[k+1])
   std::size_t grains = 0;
 
@@ -29,26 +28,22 @@ struct Schedule {
   std::size_t first_chunk(std::size_t thread, std::size_t threads) const;
 };
 
-/// Within a parallel region: `work(chunk)` for every chunk, and `after(chunk)` as soon as all pairs of its grains are
-/// done, while they are at hand: pairs reach grains of later chunks only, so a chunk's grains have all they get once it
-/// is done, unless another thread's chunk adds to them.
+/// Within a parallel region: `work(chunk)` for every chunk, and `after(chunk)` once all pairs of its grains are done. A
+/// single thread goes on with it at once, while the grains are at hand: pairs reach grains of later chunks only.
+/// Several wait for each other first and share it evenly: what the first could do at once, the last would have to wait
+/// for.
 template <class Work, class After>
 void run_chunks(const Schedule& schedule, Work&& work, After&& after) {
   const auto thread = static_cast<std::size_t>(omp_get_thread_num());
   const auto threads = static_cast<std::size_t>(omp_get_num_threads());
-  const std::size_t first = schedule.first_chunk(thread, threads), end = schedule.first_chunk(thread + 1, threads);
-  for (std::size_t k = first; k < end; ++k) {
+  for (std::size_t k = schedule.first_chunk(thread, threads); k < schedule.first_chunk(thread + 1, threads); ++k) {
     work(k);
-    if (schedule.first_source[k] >= first) after(k);
+    if (threads == 1) after(k);
   }
+  if (threads == 1) return;
 #pragma omp barrier
-  // What waited is shared out anew: it is most chunks of the last thread and none of the first.
-  std::size_t turn = 0;
-  for (std::size_t t = 1; t < threads; ++t) {
-    const std::size_t low = schedule.first_chunk(t, threads), high = schedule.first_chunk(t + 1, threads);
-    for (std::size_t k = low; k < high; ++k)
-      if (schedule.first_source[k] < low && turn++ % threads == thread) after(k);
-  }
+  const std::size_t chunks = schedule.chunks();
+  for (std::size_t k = chunks * thread / threads; k < chunks * (thread + 1) / threads; ++k) after(k);
 }
 
 /// Pairs sorted by i, in chunks of `chunk` grains; `chunk_begin` as in Contacts. O(pairs).

@@ -65,7 +65,8 @@ TEST(Schedule, EveryChunkIsFinishedOnceAndAfterItsSources) {
     run_chunks(
         s, [&](std::size_t k) { ++worked[k]; },
         [&](std::size_t k) {
-          for (std::size_t source = s.first_source[k]; source <= k; ++source) early += worked[source] == 0;
+          for (std::size_t source = 0; source <= k; ++source)
+            early += (source == k || j[source] == k) && worked[source] == 0;
           ++finished[k];
         });
     EXPECT_EQ(early, 0) << threads;
