@@ -146,16 +146,19 @@ TEST(MembraneRun, CylinderHoldsThePressureAndTheFrictionOfItsEnds) {
   EXPECT_LT(state.membrane.solid / state.membrane.volume, 0.7);
 }
 
-/// Through slips in which grains reach 1 m/s too, at half the usual step: there the leapfrog itself misses up to 1.3e-4
-/// at 0.9 of the limit. Rows in the midst of a slip hold half a step of damping more.
+/// Through slips in which grains reach 1 m/s too, at a third of the limit: at 0.9 of it the leapfrog itself misses up
+/// to 1.3e-4 there. Rows in the midst of a slip hold half a step of damping more. Where the shearing starts from need
+/// not be wholly at rest: a grain on the surface may chatter for long.
 TEST(MembraneRun, LedgerCloses) {
   for (const std::uint64_t seed : {1, 2, 7, 8, 11}) {
-    Confined now(seed);
+    std::string text = cylinder;
+    text.replace(text.find("unbalanced_force = 1e-5"), 23, "unbalanced_force = 1e-4");
+    Confined now(seed, text);
     State& state = now.state;
     const EnergyTable before = energies(now.scene, state);
     state.stage = 2, state.stage_step = 0, state.stage_time = 0;
     state.policy = {};
-    now.scene.timestep.safety = 0.45, now.scene.stages[2].until_steps = 8000;
+    now.scene.timestep.safety = 0.33, now.scene.stages[2].until_steps = 11000;
     begin_body_stage(now.scene, state);
     double worst = 0;
     RunObserver observer;
