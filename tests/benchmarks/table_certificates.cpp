@@ -4,11 +4,10 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <vector>
 
-#include "base/environment.hpp"
 #include "support/packings.hpp"
+#include "support/program.hpp"
 #include "timestep/interval.hpp"
 
 using namespace eg;
@@ -58,13 +57,7 @@ void print_lattice(const char* kind, const char* name, std::size_t grains, doubl
   print_row(kind, scene, state);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  fit_environment(argv);
-  std::vector<std::size_t> sizes;
-  for (int k = 1; k < argc; ++k) sizes.push_back(static_cast<std::size_t>(std::atof(argv[k])));
-  if (sizes.empty()) sizes = {1000, 10000, 100000};
+int print_table(const std::vector<std::size_t>& sizes) {
   fmt::print("{:<18} {:>8} {:>9} {:>9} | {:^19} | {:^29}\n", "", "", "", "one step", "in the run", "interval");
   fmt::print("{:<18} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}  {}\n", "packing", "grains", "contacts", "ms",
              "steps", "width", "steps", "width", "probable", "method of the upper end");
@@ -81,4 +74,14 @@ int main(int argc, char** argv) {
     print_lattice("HCP, 1 % scatter", "hcp", grains, 0.01);
     print_lattice("hexagonal, 1 %", "hexagonal", grains, 0.01);
   }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Cost and width of the proved time step, by kind and size of packing", "table_certificates"};
+  std::vector<std::size_t> sizes = {1000, 10000, 100000};
+  app.add_option("grains", sizes, "numbers of grains")->check(test::grain_counts);
+  return test::run_program(app, argc, argv, [&] { return print_table(sizes); });
 }

@@ -2,10 +2,9 @@
 // states whose contacts slide. Run by: ./dev bench damping [--json]
 #include <fmt/format.h>
 
-#include <cstring>
-
 #include "report/table.hpp"
 #include "support/packings.hpp"
+#include "support/program.hpp"
 #include "timestep/consistent.hpp"
 #include "timestep/damped_interval.hpp"
 #include "timestep/solver_limit.hpp"
@@ -89,9 +88,7 @@ void add_sliding(Table& table, double friction) {
     add_row(table, fmt::format("sheared, µ {}", friction), c, scene, state, dt0);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int print_table(bool json) {
   Table table({{"packing"},
                {"damping"},
                {"sliding", "sliding", "share", 3},
@@ -109,11 +106,21 @@ int main(int argc, char** argv) {
     add_packing(table, fmt::format("{}, 150", grading), scene,
                 test::random_packing(scene, grading, 150, 1, 0.68, 6000));
   for (const double friction : {0.1, 0.3}) add_sliding(table, friction);
-  if (argc > 1 && std::strcmp(argv[1], "--json") == 0)
+  if (json)
     fmt::print("{}\n", table.json().dump(2));
   else
     fmt::print(
         "Largest stable step over the undamped limit dt0 of the same state; margin: the step that blows up over "
         "dt_safe.\n\n{}",
         table.text());
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"The damped and sliding step against the solver", "table_damping"};
+  bool json = false;
+  app.add_flag("--json", json, "as JSON");
+  return test::run_program(app, argc, argv, [&] { return print_table(json); });
 }

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numbers>
+#include <set>
 
 #include "boundary/body_control.hpp"
 #include "dynamics/run.hpp"
@@ -16,6 +16,7 @@
 #include "report/table.hpp"
 #include "specimen/make_packing.hpp"
 #include "specimen/make_state.hpp"
+#include "support/program.hpp"
 #include "timestep/controller.hpp"
 
 using namespace eg;
@@ -149,10 +150,7 @@ void add_row(const Row& row, Table& table, Figure& figure) {
   fmt::print(stderr, "{} {}: {:.1f}, by outer section {:.1f}\n", row.test, row.variant, mean, outer);
 }
 
-}  // namespace
-
-int main(int count, char** arguments) {
-  const std::string folder = count > 1 ? arguments[1] : "docs", only = count > 2 ? arguments[2] : "";
+int print_table(const std::string& folder, const std::string& only) {
   Table table = empty_table();
   std::map<std::string, Figure> figures;
   for (const Row& row : all_rows()) {
@@ -165,4 +163,17 @@ int main(int count, char** arguments) {
   if (!only.empty()) return 0;
   write_file(folder + "/membranes.json", table.json().dump(2) + "\n");
   for (auto& [name, figure] : figures) write_figure(figure, fmt::format("{}/figures/membranes_{}.svg", folder, name));
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Rods and balls in membranes: membranes.json and its figures", "table_membranes"};
+  std::string folder = "docs", only;
+  app.add_option("folder", folder, "where they are written")->check(CLI::ExistingDirectory)->capture_default_str();
+  std::set<std::string> names;
+  for (const Row& row : all_rows()) names.insert(row.test);
+  app.add_option("test", only, "one of the tests alone: only printed")->check(CLI::IsMember(names));
+  return test::run_program(app, argc, argv, [&] { return print_table(folder, only); });
 }

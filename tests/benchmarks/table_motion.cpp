@@ -2,9 +2,9 @@
 // rough-bottomed slope against LAMMPS; with the share of list upkeep. Run by: ./dev bench motion
 #include <numbers>
 
-#include "base/environment.hpp"
 #include "rivals.hpp"
 #include "support/packings.hpp"
+#include "support/program.hpp"
 
 using namespace eg;
 using namespace eg::bench;
@@ -101,10 +101,7 @@ void slope() {
   print_row("flow down a slope", state, ours, theirs);
 }
 
-}  // namespace
-
-int main(int, char** argv) {
-  fit_environment(argv);
+int print_table() {
   pin(true);
   omp_set_num_threads(1);
   fmt::print("{:<26} {:>7} {:>10} {:>12} {:>10} {:>20} {:>6}\n", "case", "grains", "steps/s", "ns/contact", "lists",
@@ -112,4 +109,12 @@ int main(int, char** argv) {
   settling();
   biaxial();
   slope();
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Fast cases: steps a second, share of the lists, against LAMMPS", "table_motion"};
+  return test::run_program(app, argc, argv, print_table);
 }

@@ -1,9 +1,9 @@
 // The whole explicit step, list upkeep included, against LAMMPS on the same packings in the same run: a slow isotropic
 // compression of Hertz–Mindlin spheres with shear history, one core each, run in turn.
 // Run by: ./dev bench performance [GRAINS...]; needs Debian's package lammps for the comparison.
-#include "base/environment.hpp"
 #include "rivals.hpp"
 #include "support/packings.hpp"
+#include "support/program.hpp"
 
 using namespace eg;
 using namespace eg::bench;
@@ -78,12 +78,14 @@ void print_row(std::size_t grains) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  fit_environment(argv);
-  std::vector<std::size_t> sizes;
-  for (int k = 1; k < argc; ++k) sizes.push_back(static_cast<std::size_t>(std::atof(argv[k])));
-  if (sizes.empty()) sizes = {10000, 100000, 1000000};
-  fmt::print("ns a step and touching contact: median (least–most) of {} rounds\n", rounds);
-  fmt::print("{:>8} {:>9} {:>22} {:>22} {:>22} {:>20}\n", "grains", "contacts", "one core", "two cores",
-             "LAMMPS, one core", "ratio, one core");
-  for (const auto n : sizes) print_row(n);
+  CLI::App app{"The whole step against LAMMPS on the same packings", "table_performance"};
+  std::vector<std::size_t> sizes = {10000, 100000, 1000000};
+  app.add_option("grains", sizes, "numbers of grains")->check(test::grain_counts);
+  return test::run_program(app, argc, argv, [&] {
+    fmt::print("ns a step and touching contact: median (least–most) of {} rounds\n", rounds);
+    fmt::print("{:>8} {:>9} {:>22} {:>22} {:>22} {:>20}\n", "grains", "contacts", "one core", "two cores",
+               "LAMMPS, one core", "ratio, one core");
+    for (const auto n : sizes) print_row(n);
+    return 0;
+  });
 }

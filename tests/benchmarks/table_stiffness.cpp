@@ -5,15 +5,15 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <string>
 
-#include "base/environment.hpp"
+#include "app/positive.hpp"
 #include "report/table.hpp"
 #include "stiffness/backbone.hpp"
 #include "stiffness/relaxation.hpp"
 #include "support/packings.hpp"
+#include "support/program.hpp"
 #include "support/tiling.hpp"
 
 namespace {
@@ -56,14 +56,7 @@ Sample sample(std::size_t grains) {
   return big;
 }
 
-}  // namespace
-
-int main(int count, char** arguments) {
-  fit_environment(arguments);
-  const double tolerance = count > 1 ? std::atof(arguments[1]) : 1e-10;
-  std::vector<std::size_t> sizes;
-  for (int k = 2; k < count; ++k) sizes.push_back(std::strtoul(arguments[k], nullptr, 10));
-  if (sizes.empty()) sizes = {1000, 10000, 100000};
+int print_table(double tolerance, const std::vector<std::size_t>& sizes) {
   Table table({{"grains"},
                {"contacts"},
                {"iterations", "iterations of six loads"},
@@ -87,4 +80,16 @@ int main(int count, char** arguments) {
     fmt::print(stderr, "{} grains: {:.2f} s\n", network.size(), time);
   }
   fmt::print("{}", table.text());
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Cost of the elastic tensor by size of packing", "table_stiffness"};
+  double tolerance = 1e-10;
+  std::vector<std::size_t> sizes = {1000, 10000, 100000};
+  app.add_option("tolerance", tolerance, "largest relative error")->check(positive_option)->capture_default_str();
+  app.add_option("grains", sizes, "numbers of grains")->check(test::grain_counts);
+  return test::run_program(app, argc, argv, [&] { return print_table(tolerance, sizes); });
 }

@@ -1,9 +1,9 @@
 // The page docs/stability.md and its twin docs/stability.json. Run by: ./dev study extremes [--large]
-#include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "extremes.hpp"
+#include "support/program.hpp"
 
 using namespace eg;
 
@@ -29,11 +29,7 @@ nlohmann::json json_of(const test::ExtremeRow& r) {
           {"method", i.method_upper}, {"seconds", i.seconds},     {"holds", r.holds()}};
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  const std::string folder = argc > 1 ? argv[1] : ".";
-  const bool large = argc > 2 && std::strcmp(argv[2], "--large") == 0;
+int write_study(const std::string& folder, bool large) {
   std::ofstream page(folder + "/stability.md");
   page
       << "# The proved step on ugly cases\n\nWritten by `./dev study extremes` (`--large`: 10⁶ grains too); the same "
@@ -57,4 +53,16 @@ int main(int argc, char** argv) {
   }
   std::ofstream(folder + "/stability.json") << all.dump(1) << "\n";
   return holds ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"The proved step held against the truth on ugly cases: stability.md and stability.json",
+               "study_extremes"};
+  std::string folder = ".";
+  app.add_option("folder", folder, "where they are written")->check(CLI::ExistingDirectory)->capture_default_str();
+  bool large = false;
+  app.add_flag("--large", large, "10⁶ grains too");
+  return test::run_program(app, argc, argv, [&] { return write_study(folder, large); });
 }
