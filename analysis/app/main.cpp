@@ -12,22 +12,36 @@
 
 namespace {
 
-/// A first word that is no subcommand is a misspelt one; the parser would only say that there is none.
-void check_subcommand(const CLI::App& app, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') return;
+/// A word in the place of a subcommand that names none is a misspelt one; the parser would only say that there is none.
+void check_subcommand(const CLI::App& app, char** words, const std::string& before) {
+  const auto subcommands = app.get_subcommands([](const CLI::App* a) { return !a->get_name().empty(); });
+  if (subcommands.empty() || !*words || **words == '-') return;
   std::vector<std::string> names;
-  for (const auto* sub : app.get_subcommands([](const CLI::App*) { return true; })) names.push_back(sub->get_name());
-  if (std::ranges::find(names, argv[1]) != names.end()) return;
-  const auto meant = eg::nearest(argv[1], names);
-  throw eg::InputError(fmt::format(
-      "eigengrain: {} is not a subcommand; {}", argv[1],
-      meant.empty() ? "`eigengrain --help` lists what there is" : fmt::format("did you mean \"{}\"?", meant)));
+  for (const auto* sub : subcommands) names.push_back(sub->get_name());
+  const auto found = std::ranges::find(names, *words);
+  if (found != names.end())
+    return check_subcommand(*subcommands[static_cast<std::size_t>(found - names.begin())], words + 1,
+                            before + " " + *words);
+  const auto meant = eg::nearest(*words, names);
+  throw eg::InputError(fmt::format("{}: {} is not a subcommand; {}", before, *words,
+                                   meant.empty() ? fmt::format("`{} --help` lists what there is", before)
+                                                 : fmt::format("did you mean \"{}\"?", meant)));
+}
+
+/// The subcommand in use, and the words that lead to it.
+std::pair<const CLI::App*, std::string> used_command(const CLI::App& app) {
+  const CLI::App* used = &app;
+  std::string words = app.get_name();
+  while (!used->get_subcommands().empty()) {
+    used = used->get_subcommands().front();
+    words += " " + used->get_name();
+  }
+  return {used, words};
 }
 
 /// The options of the subcommand in use that words of the command line may have meant.
 std::string meant_options(const CLI::App& app) {
-  const CLI::App* used = &app;
-  while (!used->get_subcommands().empty()) used = used->get_subcommands().front();
+  const CLI::App* used = used_command(app).first;
   std::vector<std::string> names;
   for (const auto* option : used->get_options())
     for (const auto& name : option->get_lnames()) names.push_back("--" + name);
@@ -47,9 +61,9 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", eg::version());
   app.failure_message([](const CLI::App* a, const CLI::Error& e) {
-    return fmt::format("eigengrain: {}{}; `eigengrain {}--help` lists what there is\n", e.what(),
+    return fmt::format("eigengrain: {}{}; `{} --help` lists what there is\n", e.what(),
                        e.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError) ? meant_options(*a) : "",
-                       a->get_subcommands().empty() ? "" : a->get_subcommands().front()->get_name() + " ");
+                       used_command(*a).second);
   });
   eg::Action action;
   eg::add_run_command(app, action);
@@ -61,7 +75,7 @@ int main(int argc, char** argv) {
   eg::add_plot_command(app, action);
   eg::add_info_command(app, action);
   try {
-    check_subcommand(app, argc, argv);
+    check_subcommand(app, argv + 1, app.get_name());
     app.parse(argc, argv);
     const int status = action();
     if (std::fflush(stdout) != 0 || std::ferror(stdout)) throw eg::RunError("the output could not be written");

@@ -8,6 +8,7 @@
 #include "app/commands.hpp"
 #include "app/measure_figure.hpp"
 #include "app/measure_report.hpp"
+#include "app/number_words.hpp"
 #include "app/packing_input.hpp"
 #include "app/since_report.hpp"
 #include "app/slice_figure.hpp"
@@ -110,9 +111,12 @@ void add_measure_command(CLI::App& app, Action& action) {
   figures.insert(figures.end(), slice_figures().begin(), slice_figures().end());
   sub->add_option("--plot", flags->plot, "which figure (default: rose)")->check(CLI::IsMember(figures))->needs(figure);
   sub->add_option("--chains", flags->chains, "write contacts and force chains for ParaView (.vtp)");
-  sub->add_option("--split", flags->splits, "diameters between size fractions, D1,D2,... [m]")->delimiter(',');
+  sub->add_option("--split", flags->splits, "diameters between size fractions, D1,D2,... [m]")
+      ->delimiter(',')
+      ->check(finite_option);
   sub->add_option("--sphere", flags->spheres, "measure inside a sphere X,Y,Z,RADIUS (2D: X,Y,RADIUS) [m]; repeatable")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->check(finite_option);
   add_zone_options(*sub, flags->zones);
   add_since_options(*sub, flags->since);
   add_slice_options(*sub, flags->slice);

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "app/number_words.hpp"
 #include "base/error.hpp"
 #include "contact/laws.hpp"
 #include "dynamics/engine.hpp"
@@ -19,7 +20,11 @@ Snapshot read_or_make(const PackingFlags& flags) {
     throw input_error(flags.input, 0, flags.bare_flag, "is for bare packings; a scene or snapshot has its own material",
                       "leave it out, or change a scene with --set");
   Snapshot s = read_input(flags.input, flags.settings);
-  if (s.state.grains.size() > 0) return s;
+  if (s.state.grains.size() > 0) {
+    if (flags.initial)
+      throw input_error(flags.input, 0, "--initial", "is for scenes, and this is a snapshot", "leave it out");
+    return s;
+  }
   s.state = make_specimen(s.scene);
   if (!flags.initial && !s.scene.stages.empty()) run_quietly(s.scene, s.state);
   return s;
@@ -39,12 +44,12 @@ void add_packing_options(CLI::App& command, PackingFlags& f) {
     return command.add_option(name, value, text)->each([&f, name](const std::string&) { f.bare_flag = name; });
   };
   bare("--law", f.bare.law, "contact law of a bare packing")->check(CLI::IsMember(law_names()));
-  bare("--shear-modulus", f.bare.shear_modulus, "G of a bare packing [Pa]");
-  bare("--poisson", f.bare.poisson, "Poisson's ratio of a bare packing [-]");
-  bare("--density", f.bare.density, "density of the grains of a bare packing [kg/m3]");
-  bare("--friction", f.bare.friction, "friction coefficient of a bare packing [-]");
-  bare("--normal-stiffness", f.bare.normal_stiffness, "kn of a bare packing, linear law [N/m]");
-  bare("--shear-stiffness", f.bare.shear_stiffness, "ks of a bare packing, linear law [N/m]");
+  bare("--shear-modulus", f.bare.shear_modulus, "G of a bare packing [Pa]")->check(finite_option);
+  bare("--poisson", f.bare.poisson, "Poisson's ratio of a bare packing [-]")->check(finite_option);
+  bare("--density", f.bare.density, "density of the grains of a bare packing [kg/m3]")->check(finite_option);
+  bare("--friction", f.bare.friction, "friction coefficient of a bare packing [-]")->check(finite_option);
+  bare("--normal-stiffness", f.bare.normal_stiffness, "kn of a bare packing, linear law [N/m]")->check(finite_option);
+  bare("--shear-stiffness", f.bare.shear_stiffness, "ks of a bare packing, linear law [N/m]")->check(finite_option);
   bare("--arms", f.bare.arms, "contact arms of a bare packing: overlap (R - d/2) or radius (R, as LAMMPS gran/*)")
       ->check(CLI::IsMember({"overlap", "radius"}));
   command.add_flag("--no-rotation", f.bare.no_rotation, "without rotational degrees of freedom");

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.hpp"
+#include "app/number_words.hpp"
 #include "app/packing_input.hpp"
 #include "base/error.hpp"
 #include "io/history.hpp"
@@ -57,21 +58,20 @@ Quantity quantity(const HistoryTable& table, const std::string& name, const std:
 /// The rows that a mean is taken of: --mean-over COLUMN=FROM:TO.
 struct Window {
   std::string column;
-  double from = 0, to = 0;
+  double from = NAN, to = NAN;
 };
 
 Window window_of(const std::string& text) {
   Window w;
   const auto equals = text.find('='), colon = text.find(':');
-  try {
-    if (equals == std::string::npos || colon == std::string::npos || colon < equals) throw std::invalid_argument(text);
+  if (equals < colon && colon != std::string::npos) {
     w.column = text.substr(0, equals);
-    w.from = std::stod(text.substr(equals + 1, colon - equals - 1));
-    w.to = std::stod(text.substr(colon + 1));
-  } catch (const std::logic_error&) {  // of stod too
+    w.from = number_of(text.substr(equals + 1, colon - equals - 1));
+    w.to = number_of(text.substr(colon + 1));
+  }
+  if (std::isnan(w.from) || std::isnan(w.to))
     throw input_error("eigengrain plot", 0, fmt::format("--mean-over {}", text), "must be COLUMN=FROM:TO",
                       "for example strain_z=0.3:0.5");
-  }
   return w;
 }
 
@@ -196,6 +196,11 @@ int plot_means(const PlotFlags& flags, const std::vector<HistoryTable>& tables) 
 
 int plot_command(const PlotFlags& flags) {
   check_figure(flags.figure);
+  if (flags.over.empty() && flags.figure.empty() && !flags.json)
+    throw InputError("eigengrain plot: nothing to make of these columns; add --figure FILE, --json or --mean-over");
+  if (flags.labels.size() > flags.inputs.size())
+    throw InputError(fmt::format("eigengrain plot: --label names {} histories of {}; give one name each",
+                                 flags.labels.size(), flags.inputs.size()));
   std::vector<HistoryTable> tables;
   for (const auto& path : flags.inputs) {
     tables.push_back(read_history(path));

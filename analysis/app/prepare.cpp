@@ -24,7 +24,10 @@ InputKind kind_of(const std::string& path) {
   if (std::filesystem::is_directory(path))
     throw input_error(path, 0, "this", "is a folder, not a file", "name a scene, a snapshot or a packing");
   if (looks_like_snapshot(path)) return InputKind::snapshot;
-  if (std::filesystem::path(path).extension() == ".toml") return InputKind::scene;
+  const auto ending = std::filesystem::path(path).extension();
+  if (ending == ".toml") return InputKind::scene;
+  if (ending == ".h5")
+    throw input_error(path, 0, "this", "is no snapshot in spite of its name", "take a file that a run has written");
   std::ifstream in(path);
   for (std::string line; std::getline(in, line);) {
     const auto first = line.find_first_not_of(" \t\r");

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "app/number_words.hpp"
 #include "base/error.hpp"
 #include "io/snapshot.hpp"
 #include "measure/gradient_fit.hpp"
@@ -109,7 +110,8 @@ void add_since_options(CLI::App& command, SinceFlags& flags) {
   command.add_option("--since", flags.snapshot, "displacements and strains since this earlier snapshot");
   command
       .add_option("--gauge", flags.gauges, "with --since: displacement of the grain nearest to X,Y,Z [m]; repeatable")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->check(finite_option);
   command.add_option("--fields", flags.fields,
                      "with --since: displacement and strain of every grain for ParaView (.vtp)");
 }

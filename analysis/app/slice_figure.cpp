@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "app/number_words.hpp"
 #include "app/packing_input.hpp"
-#include "app/positive.hpp"
 #include "base/error.hpp"
 #include "measure/volume.hpp"
 #include "measure/zone_grid.hpp"
@@ -46,9 +45,8 @@ Slice slice_of(const SliceFlags& flags, const State& state, const std::string& i
   slice.axis = name == "x" ? 0 : name == "y" ? 1 : 2;
   slice.right = slice.axis == 0 ? 1 : 0, slice.up = slice.axis == 2 ? 1 : 2;
   const auto number = [&](const std::string& word) {
-    double value = 0;
-    const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (fault != std::errc() || end != word.data() + word.size()) throw error();
+    const double value = number_of(word);
+    if (std::isnan(value)) throw error();
     return value;
   };
   const Extent& across = slice.extents[static_cast<std::size_t>(slice.axis)];
@@ -130,6 +128,10 @@ SliceChart displacement_chart(const Slice& slice, const State& state, const Sinc
 
 /// Cells of some edge that fill a stretch, at least one.
 std::vector<double> cells_along(const Extent& e, double edge) {
+  if (e.length() / edge > 1e6)
+    throw InputError(fmt::format(
+        "eigengrain measure: --map-cell {:.3g} cuts {:.3g} m into more than a million cells; take larger ones", edge,
+        e.length()));
   const int count = std::max(1, static_cast<int>(std::lround(e.length() / edge)));
   std::vector<double> places;
   for (int k = 0; k <= count; ++k) places.push_back(e.low + e.length() * k / count);
@@ -142,8 +144,11 @@ double cell_of(const SliceFlags& flags, const State& state) {
 
 Figure void_figure(const Slice& slice, const State& state, double cell) {
   ZoneGrid grid;
-  for (std::size_t k = 0; k < 3; ++k) grid.edges[k] = cells_along(slice.extents[k], cell);
-  if (state.dimension == 3) grid.edges[static_cast<std::size_t>(slice.axis)] = {slice.through.low, slice.through.high};
+  for (const int k : {slice.right, slice.up}) {
+    const auto axis = static_cast<std::size_t>(k);
+    grid.edges[axis] = cells_along(slice.extents[axis], cell);
+  }
+  grid.edges[static_cast<std::size_t>(slice.axis)] = {slice.through.low, slice.through.high};
   const ZoneTable table = measure_zones(state, grid);
   const auto &x = grid.edges[static_cast<std::size_t>(slice.right)],
              &y = grid.edges[static_cast<std::size_t>(slice.up)];

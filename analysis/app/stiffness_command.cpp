@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "app/commands.hpp"
+#include "app/number_words.hpp"
 #include "app/packing_input.hpp"
 #include "app/spring_file.hpp"
 #include "app/stiffness_report.hpp"
@@ -168,6 +169,7 @@ void add_stiffness_command(CLI::App& app, Action& action) {
   sub->add_option("--solver", f->solver, "auto: cholesky for small packings, else cg (conjugate gradients)")
       ->check(CLI::IsMember({"auto", "cg", "cholesky"}));
   sub->add_option("--tolerance", f->tolerance, "relative error of the moduli at which cg stops (1e-10)")
+      ->check(finite_option)
       ->check(CLI::Range(1e-14, 0.1));
   sub->callback([f, &action] { action = [f] { return stiffness_command(*f); }; });
 }

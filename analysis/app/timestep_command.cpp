@@ -5,10 +5,12 @@
 #include <chrono>
 
 #include "app/commands.hpp"
+#include "app/number_words.hpp"
 #include "app/packing_input.hpp"
 #include "app/slepc_program.hpp"
 #include "app/timestep_report.hpp"
 #include "assembly/linearise.hpp"
+#include "base/error.hpp"
 #include "base/progress.hpp"
 #include "state/damping.hpp"
 #include "timestep/verify.hpp"
@@ -31,9 +33,28 @@ void draw_figure(const TimestepReport& report, const std::string& file) {
     save_figure(figure_of(report), file);
 }
 
+/// Options that the program of --solver slepc does not serve would be lost without a word.
+void refuse_with_slepc(const TimestepFlags& flags) {
+  const PackingFlags& p = flags.packing;
+  const char* lost = flags.verify                   ? "--verify"
+                     : !flags.figure.empty()        ? "--figure"
+                     : !std::isnan(flags.max_speed) ? "--max-speed"
+                     : p.initial                    ? "--initial"
+                     : !p.settings.empty()          ? "--set"
+                     : p.bare.no_rotation           ? "--no-rotation"
+                     : !p.bare_flag.empty()         ? p.bare_flag.c_str()
+                                                    : nullptr;
+  if (lost)
+    throw InputError(
+        fmt::format("eigengrain timestep: --solver slepc has no {}; leave it out, or take --solver own", lost));
+}
+
 int timestep_command(const TimestepFlags& flags) {
   const bool consistent = flags.linearisation == "consistent";
-  if (flags.solver == "slepc") become_slepc_program(flags.packing.input, consistent, flags.packing.json);
+  if (flags.solver == "slepc") {
+    refuse_with_slepc(flags);
+    become_slepc_program(flags.packing.input, consistent, flags.packing.json);
+  }
   check_figure(flags.figure);
   const Snapshot work = load_packing(flags.packing);
 
@@ -89,7 +110,7 @@ void add_timestep_command(CLI::App& app, Action& action) {
   sub->add_option("--solver", f->solver, "own, or slepc: a snapshot shared among the processes of mpirun")
       ->check(CLI::IsMember({"own", "slepc"}));
   sub->add_option("--max-speed", f->max_speed, "largest relative speed at a contact, for Hertz's duration [m/s]")
-      ->check(CLI::Range(1e-9, 1e9));
+      ->check(positive_option);
   sub->callback([f, &action] { action = [f] { return timestep_command(*f); }; });
 }
 

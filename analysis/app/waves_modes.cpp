@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "app/number_words.hpp"
 #include "app/packing_input.hpp"
 #include "app/waves_commands.hpp"
 #include "assembly/linearise.hpp"
@@ -261,6 +262,7 @@ void add_waves_modes(CLI::App& waves, Action& action) {
   which->add_option("--highest", f->highest, "so many of the fastest")->check(CLI::Range(1, 100000));
   which->add_option("--between", f->between, "all between two frequencies [Hz]")
       ->expected(2)
+      ->check(finite_option)
       ->check(CLI::NonNegativeNumber);
   which->add_flag("--all", f->all, "every one (dense: some thousand degrees of freedom)");
   which->require_option(0, 1);

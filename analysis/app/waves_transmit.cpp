@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "app/number_words.hpp"
 #include "app/packing_input.hpp"
-#include "app/positive.hpp"
 #include "app/waves_commands.hpp"
 #include "app/waves_transmit_report.hpp"
 #include "assembly/linearise.hpp"
@@ -184,13 +184,19 @@ void add_waves_transmit(CLI::App& waves, Action& action) {
       ->check(CLI::IsMember({"x", "y", "z"}));
   sub->add_option("--motion", f->motion, "of the source: along the axis a P wave (default), across it an S wave")
       ->check(CLI::IsMember({"x", "y", "z"}));
-  sub->add_option("--point", f->point, "source is the grain nearest to x y z [m], not the first layer")->expected(3);
+  sub->add_option("--point", f->point, "source is the grain nearest to x y z [m], not the first layer")
+      ->expected(3)
+      ->check(finite_option);
   sub->add_option("--amplitude", f->amplitude, "of the source over the mean overlap (default: 1e-3)")
       ->check(positive_option);
   sub->add_option("--duration", f->duration, "of the test [s] (default: until the waves of both ways meet)")
       ->check(positive_option);
-  sub->add_option("--step", f->step, "time step over the proved limit (default: 0.2)")->check(CLI::Range(1e-4, 1.0));
-  sub->add_option("--damping", f->damping, "ratio of contact dashpots (default: 0)")->check(CLI::NonNegativeNumber);
+  sub->add_option("--step", f->step, "time step over the proved limit (default: 0.2)")
+      ->check(finite_option)
+      ->check(CLI::Range(1e-4, 1.0));
+  sub->add_option("--damping", f->damping, "ratio of contact dashpots (default: 0)")
+      ->check(finite_option)
+      ->check(CLI::NonNegativeNumber);
   sub->add_option("--figure", f->figure, "draw the map of frequency and wave number (.svg, .png or .pdf)");
   sub->add_option("--traces", f->traces, "draw source and received signals (.svg, .png or .pdf)");
   sub->add_option("--tables", f->tables, "write traces, response and map (HDF5)");

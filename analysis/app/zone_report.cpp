@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
+#include "app/number_words.hpp"
 #include "base/error.hpp"
 #include "report/table.hpp"
 
@@ -35,9 +35,8 @@ struct Option {
     return input_error(input, 0, text, rule, remedy);
   }
   double number(const std::string& word) const {
-    double value = 0;
-    const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (fault != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
+    const double value = number_of(word);
+    if (std::isnan(value))
       throw error(fmt::format("has \"{}\" where a number belongs", word), "write numbers in m without a unit");
     return value;
   }

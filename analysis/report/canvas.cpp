@@ -38,7 +38,7 @@ cairo_surface_t* open_surface(const std::filesystem::path& path, double width, d
 void Canvas::Release::operator()(_cairo* context) const { cairo_destroy(context); }
 void Canvas::Release::operator()(_cairo_surface* surface) const { cairo_surface_destroy(surface); }
 
-Canvas::Canvas(std::filesystem::path path, double width, double height) : path_(std::move(path)) {
+Canvas::Canvas(std::filesystem::path path, double width, double height) : path_(std::move(path)), width_(width) {
   std::error_code ignored;  // a folder that cannot be made shows when the file is written
   if (path_.has_parent_path()) std::filesystem::create_directories(path_.parent_path(), ignored);
   surface_.reset(open_surface(path_, width, height));
@@ -223,6 +223,15 @@ void Canvas::text(Point at, const std::string& text, const TextStyle& style) {
   cairo_move_to(c, shift, half_capital * style.size);
   cairo_show_text(c, text.c_str());
   cairo_restore(c);
+}
+
+void Canvas::headings(double left, const std::string& title, const std::string& subtitle) {
+  const auto fitted = [&](Point at, const std::string& text, TextStyle style) {
+    style.size *= std::min(1.0, (width_ - at.x - 8) / std::max(1.0, text_width(text, style)));
+    this->text(at, text, style);
+  };
+  fitted({left, 20}, title, {.size = 13, .bold = true, .colour = {0.13, 0.13, 0.15}});
+  fitted({left, title.empty() ? 18.0 : 37.0}, subtitle, {.size = 9.5, .colour = {0.42, 0.42, 0.46}});
 }
 
 void Canvas::clip(Point a, Point b) {

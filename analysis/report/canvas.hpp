@@ -57,6 +57,8 @@ class Canvas {
   /// Text with the middle of its height of capitals at `at`.
   void text(Point at, const std::string& text, const TextStyle& style);
   double text_width(const std::string& text, const TextStyle& style) const;
+  /// Title and subtitle at the top of the page, smaller where it is too narrow for them.
+  void headings(double left, const std::string& title, const std::string& subtitle);
   /// Until unclip(), nothing appears outside the rectangle.
   void clip(Point a, Point b);
   void unclip();
@@ -70,6 +72,7 @@ class Canvas {
   void set(const TextStyle& style) const;
 
   std::filesystem::path path_;
+  double width_;
   std::unique_ptr<_cairo_surface, Release> surface_;
   std::unique_ptr<_cairo, Release> context_;
 };

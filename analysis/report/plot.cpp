@@ -14,8 +14,8 @@ namespace eg {
 
 namespace {
 
-constexpr Colour ink{0.13, 0.13, 0.15}, grid{0.88, 0.88, 0.9}, faint{0.42, 0.42, 0.46};
-constexpr TextStyle small{.size = 9.5, .colour = ink}, large{.size = 13, .bold = true, .colour = ink};
+constexpr Colour ink{0.13, 0.13, 0.15}, grid{0.88, 0.88, 0.9};
+constexpr TextStyle small{.size = 9.5, .colour = ink};
 
 /// How the k-th series looks. Colours after Okabe and Ito 2008, apart for every kind of colour vision.
 struct Look {
@@ -241,8 +241,7 @@ class Painter {
 
   void titles() {
     const double left = figure_.y.rows.empty() ? x_.start : 16;
-    canvas_.text({left, 20}, figure_.title, large);
-    canvas_.text({left, figure_.title.empty() ? 18.0 : 37.0}, figure_.subtitle, {.size = 9.5, .colour = faint});
+    canvas_.headings(left, figure_.title, figure_.subtitle);
     const TextStyle style{.size = 10.5, .colour = ink, .align = Align::centre};
     canvas_.text({(x_.start + x_.end) / 2, bottom_ + 30}, with_exponent(figure_.x.title, x_ticks_.exponent), style);
     TextStyle turned = style;

@@ -17,11 +17,6 @@ constexpr double page = 420, reach = 150;  ///< [pt]
 constexpr Point middle{page / 2, 232};
 constexpr Colour ink{0.13, 0.13, 0.15}, grid{0.72, 0.72, 0.75}, faint{0.42, 0.42, 0.46}, petal{0.36, 0.58, 0.78};
 
-void titles(Canvas& canvas, const RoseChart& chart) {
-  canvas.text({16, 20}, chart.title, {.size = 13, .bold = true, .colour = ink});
-  canvas.text({16, 37}, chart.subtitle, {.size = 9.5, .colour = faint});
-}
-
 double longest(const RoseChart& chart) {
   double most = 0;
   for (const auto& p : chart.petals) most = std::max(most, p.value);
@@ -148,7 +143,7 @@ void draw_solid(Canvas& canvas, const RoseChart& chart) {
 
 void write_rose(const RoseChart& chart, const std::filesystem::path& path) {
   Canvas canvas(path, page, page);
-  titles(canvas, chart);
+  canvas.headings(16, chart.title, chart.subtitle);
   if (chart.solid)
     draw_solid(canvas, chart);
   else

@@ -111,8 +111,7 @@ void draw_shades(Canvas& canvas, const Frame& frame, const Shades& shades) {
 void write_slice(const SliceChart& chart, const std::filesystem::path& path) {
   const Frame frame(chart);
   Canvas canvas(path, std::max(360.0, frame.right + (chart.shades ? 62 : 24)), frame.bottom + beneath);
-  canvas.text({16, 20}, chart.title, {.size = 13, .bold = true, .colour = ink});
-  canvas.text({16, 37}, chart.subtitle, {.size = 9.5, .colour = faint});
+  canvas.headings(16, chart.title, chart.subtitle);
   canvas.clip({left, top}, {frame.right, frame.bottom});
   draw_disks(canvas, frame, chart);
   draw_lines(canvas, frame, chart.lines);

@@ -31,9 +31,12 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
     return row.back();
   };
   std::string best;
-  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
+  std::size_t best_distance = std::min(std::max<std::size_t>(2, word.size() / 3) + 1, word.size());
   for (const auto& candidate : candidates)
     if (const auto d = distance(candidate); d < best_distance) best = candidate, best_distance = d;
+  if (best.empty() && word.size() > 2)
+    for (const auto& candidate : candidates)
+      if (candidate.starts_with(word)) return candidate;  // cut short
   return best;
 }
 

@@ -1,8 +1,11 @@
 #include "measure/zone_grid.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.hpp"
 #include "measure/images.hpp"
 #include "measure/volume.hpp"
 
@@ -11,6 +14,7 @@ namespace eg {
 namespace {
 
 constexpr double pi = std::numbers::pi;
+constexpr double most_zones = 3e7;  // some 4 GB
 
 /// Coordinates of a point in the frame of the grid.
 Vec3 local(const ZoneGrid& grid, const Vec3& x) {
@@ -62,6 +66,10 @@ std::size_t place(const ZoneGrid& grid, std::size_t a, std::size_t b, std::size_
 }
 
 std::vector<ZoneMeasures> empty_zones(const ZoneGrid& grid, int dimension) {
+  const auto count = [&](int k) { return static_cast<double>(grid.zones(k)); };
+  if (count(0) * count(1) * count(2) > most_zones)
+    throw InputError(fmt::format("{:.2g} zones to measure are more than {:.2g}; make them larger",
+                                 count(0) * count(1) * count(2), most_zones));
   std::vector<ZoneMeasures> zones;
   for (std::size_t a = 0; a < grid.zones(0); ++a)
     for (std::size_t b = 0; b < grid.zones(1); ++b)

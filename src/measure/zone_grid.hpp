@@ -46,7 +46,7 @@ struct ZoneTable {
   double variance = 0;
 };
 
-/// Periodic images are part of the packing. Volumes are those of measure/zone.hpp.
+/// Periodic images are part of the packing. Volumes are those of measure/zone.hpp. InputError: more than 3e7 zones.
 ZoneTable measure_zones(const State&, const ZoneGrid&);
 
 }  // namespace eg

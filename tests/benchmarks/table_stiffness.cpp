@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string>
 
-#include "app/positive.hpp"
+#include "app/number_words.hpp"
 #include "report/table.hpp"
 #include "stiffness/backbone.hpp"
 #include "stiffness/relaxation.hpp"

@@ -148,6 +148,10 @@ TEST_F(MeasureCommand, ASnapshotIsComparedWithAnEarlierOne) {
     output("measure " + compare + " --plot " + plot + " --slice z --figure " + file(std::string(plot) + ".svg"));
     EXPECT_GT(std::filesystem::file_size(file(std::string(plot) + ".svg")), 1000u) << plot;
   }
+  const std::string disks =
+      "measure " + test::case_file("lattice_hexagonal") + " --initial --plot void-slice --figure ";
+  output(disks + file("disks.svg"));
+  EXPECT_GT(std::filesystem::file_size(file("disks.svg")), 1000u);
   output("measure " + run.file("final.h5") + " --void-map " + file("voids.vti"));
   EXPECT_NE(read_file(file("voids.vti")).find("Name=\"void_ratio\""), std::string::npos);
 }

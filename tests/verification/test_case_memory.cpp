@@ -1,9 +1,6 @@
 // What `eigengrain info --memory` counts, against what a run holds.
 #include <gtest/gtest.h>
 #include <malloc.h>
-#if defined(__SANITIZE_ADDRESS__)
-#include <sanitizer/allocator_interface.h>
-#endif
 
 #include <map>
 #include <memory>
@@ -12,6 +9,11 @@
 #include "io/snapshot.hpp"
 #include "search/neighbours.hpp"
 #include "support/case_run.hpp"
+
+#if defined(__SANITIZE_ADDRESS__)
+extern "C" std::size_t
+__sanitizer_get_current_allocated_bytes();  // g++ has the function, but not clang's header for it
+#endif
 
 namespace eg::test {
 namespace {

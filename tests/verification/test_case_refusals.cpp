@@ -117,5 +117,35 @@ TEST_F(Refusals, OptionsMisspelt) {
   EXPECT_NE(answer.text.find("--plot requires --figure"), std::string::npos) << answer.text;
 }
 
+TEST_F(Refusals, SubcommandsMisspelt) {
+  expect_line("rn x.toml", "eigengrain: rn is not a subcommand; did you mean \"run\"?");
+  expect_line("waves disp x.toml", "eigengrain waves: disp is not a subcommand; did you mean \"dispersion\"?");
+  expect_line("waves transmit x.toml",
+              "eigengrain: --frequency is required; `eigengrain waves transmit --help` lists what there is");
+}
+
+TEST_F(Refusals, NumbersThatAreNone) {
+  const std::string rest = ", without a unit; `eigengrain measure --help` lists what there is";
+  for (const std::string word : {"nan", "inf", "1e-3m", "x"})
+    for (const std::string option : {"--sphere", "--split", "--gauge", "--shear-modulus"})
+      expect_line("measure x.h5 " + option + " " + word,
+                  "eigengrain: " + option + ": value " + word + " must be a finite number" + rest);
+}
+
+TEST_F(Refusals, OptionsThatWouldBeLost) {
+  const std::string lattice = case_file("lattice_fcc"), snapshot = write("empty.h5", "");
+  expect_line("timestep " + snapshot,
+              snapshot + ": this is no snapshot in spite of its name; take a file that a run has written");
+  expect_line("timestep " + snapshot + " --solver slepc --verify",
+              "eigengrain timestep: --solver slepc has no --verify; leave it out, or take --solver own");
+  const std::string history = write("history.csv", "step [-],time [s]\n1,1\n");
+  expect_line("plot " + history + " --y time",
+              "eigengrain plot: nothing to make of these columns; add --figure FILE, --json or --mean-over");
+  expect_line("plot " + history + " --y time --json --label a,b",
+              "eigengrain plot: --label names 2 histories of 1; give one name each");
+  expect_line("measure " + lattice + " --initial --json --zones x:10000,y:10000,z:1000",
+              "1e+11 zones to measure are more than 3e+07; make them larger");
+}
+
 }  // namespace
 }  // namespace eg::test
