@@ -36,8 +36,7 @@ std::size_t bytes_of(const T& v) {
 }
 
 std::size_t bytes_of(const StandingBound& b) {
-  return bytes_of(b.overlap) + bytes_of(b.weight) + bytes_of(b.wall_overlap) + bytes_of(b.direction) +
-         bytes_of(b.wall_direction) + bytes_of(b.grain) + bytes_of(b.turning);
+  return bytes_of(b.overlap) + bytes_of(b.weight) + bytes_of(b.wall_overlap) + bytes_of(b.grain);
 }
 
 /// What upkeep of the lists holds on to while a run goes on: here, what one renewal of them leaves.

@@ -134,8 +134,7 @@ nlohmann::json certificate_json(const ControllerLog& log) {
   for (std::size_t c = 0; c < step_causes; ++c) causes[step_cause_name(static_cast<StepCause>(c))] = log.evaluations[c];
   return {{"evaluations", causes},
           {"checks", log.checks},
-          {"contacts_outgrown", log.outgrown},
-          {"grains_examined", log.examined},
+          {"grains_mended", log.mended},
           {"outruns", log.outruns},
           {"largest_dt_over_certified", log.worst_ratio},
           {"largest_dt_over_limit_upper", log.worst_true},

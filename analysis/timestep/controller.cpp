@@ -18,10 +18,10 @@ namespace eg {
 namespace {
 
 constexpr std::uint64_t nearest = 4, furthest = 512;     // steps from one check to the next …
-constexpr std::uint64_t in_flow = 128;                   // … and where forecasts cost too much of the step
+constexpr std::uint64_t in_flow = 192;                   // … and where forecasts cost too much of the step
 constexpr std::uint64_t youngest = 1000, oldest = 5000;  // steps that a bound may live
 constexpr double slack = 0.05;                           // of an overlap: 2.5 % of the stiffness of a Hertz contact
-constexpr double least_room = 0.04, most_room = 0.34;
+constexpr double least_room = 0.04, most_room = 0.44;
 constexpr double loose = 0.75;  // step over limit, below which forecasts are taken to cost too much
 constexpr double gain = 1.04;   // of the step, from which on a renewal was worth its cost
 
@@ -92,7 +92,7 @@ void Controller::choose(State& state) {
                        free_limit(state));
 }
 
-void Controller::evaluate(State& state, StepCause cause) {
+void Controller::evaluate(State& state, const Schedule& schedule, StepCause cause) {
   auto& plan = state.policy;
   const std::uint64_t age = state.step - plan.made;
   if (plan.lifetime == 0) plan.lifetime = youngest, plan.room = 2 * least_room;
@@ -108,8 +108,9 @@ void Controller::evaluate(State& state, StepCause cause) {
   double lower = 0;
   const auto renew = [&](double step) {
     // most of the room goes to what all contacts (of Hertz) may grow by together, the rest to single ones
-    const double growth = 1 + 0.4 * plan.room;
-    lower = bounds_.renew(state, {time, growth * growth - 1, 0.6 * plan.room, 4 / (cap * cap), step, !checked});
+    const double growth = 1 + 0.3 * plan.room;
+    lower =
+        bounds_.renew(state, schedule, {time, growth * growth - 1, 0.4 * plan.room, 4 / (cap * cap), step, !checked});
     plan.safe = std::min(cap, proved_damped_step(plan.bound.value, damping, step));
   };
   renew(before > 0 ? before : cap);
@@ -136,34 +137,34 @@ void Controller::evaluate(State& state, StepCause cause) {
   if (on_change) on_change(state);
 }
 
-bool Controller::still_stands(State& state) {
+bool Controller::still_stands(State& state, const Schedule& schedule) {
   auto& plan = state.policy;
   ++log_.checks;
   const auto ahead = [&] { return static_cast<double>(plan.check - state.step) * plan.dt; };
   if (state.step < plan.check && bounds_.check_fresh(state, ahead(), slack)) return true;
   plan.check = state.step + look_ahead(state);
-  const auto result = bounds_.check(state, ahead(), slack);
-  log_.examined += result.examined, log_.outgrown += result.outgrown;
+  const auto result = bounds_.check(state, schedule, ahead(), slack);
+  log_.mended += result.mended;
   // A stage that begins may set everything in motion at once, and so may collisions.
   plan.ahead = look_ahead(state);
-  plan.ahead = result.outrun ? plan.ahead / 2 : plan.ahead + plan.ahead / (plan.ahead < in_flow ? 4 : 16);
+  plan.ahead = result.outrun ? plan.ahead / 2 : plan.ahead + plan.ahead / (plan.ahead < in_flow ? 4 : 8);
   return result.stands;
 }
 
-double Controller::next_step(State& state) {
+double Controller::next_step(State& state, const Schedule& schedule) {
   auto& plan = state.policy;
   const bool refreshed = plan.refreshes != state.list.refreshes;
   if (plan.dt > 0 && !refreshed && state.step < plan.check && state.step < plan.due) return plan.dt;
 
   const auto begin = std::chrono::steady_clock::now();
   if (plan.dt == 0)
-    evaluate(state, state.step == 0 ? StepCause::start : StepCause::stage);
+    evaluate(state, schedule, state.step == 0 ? StepCause::start : StepCause::stage);
   else if (refreshed && !bounds_.follow(state))
-    evaluate(state, StepCause::rebuild);
+    evaluate(state, schedule, StepCause::rebuild);
   else if (state.step >= plan.due)
-    evaluate(state, StepCause::renewal);
-  else if (plan.refreshes = state.list.refreshes; !still_stands(state))
-    evaluate(state, StepCause::growth);
+    evaluate(state, schedule, StepCause::renewal);
+  else if (plan.refreshes = state.list.refreshes; !still_stands(state, schedule))
+    evaluate(state, schedule, StepCause::growth);
   log_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return plan.dt;
 }

@@ -24,12 +24,11 @@ std::string step_cause_name(StepCause cause);
 struct ControllerLog {
   std::array<std::uint64_t, step_causes> evaluations{};  ///< by cause
   std::uint64_t checks = 0;                              ///< that the bound still stands
-  std::uint64_t outgrown = 0;  ///< contacts that checks found to outgrow what they were allowed
-  std::uint64_t examined = 0;  ///< grains worked out afresh in checks
-  double seconds = 0;          ///< spent on all of it
-  double worst_ratio = 0;      ///< largest step chosen over the certified limit in force [-]
-  double worst_true = 0;       ///< largest step taken over the limit's upper end found at its last moment [-]
-  std::uint64_t outruns = 0;   ///< times that the certified limit was found above that end: contacts outran a forecast
+  std::uint64_t mended = 0;   ///< grains that checks found beyond the bound by the weights at hand
+  double seconds = 0;         ///< spent on all of it
+  double worst_ratio = 0;     ///< largest step chosen over the certified limit in force [-]
+  double worst_true = 0;      ///< largest step taken over the limit's upper end found at its last moment [-]
+  std::uint64_t outruns = 0;  ///< times that the certified limit was found above that end: contacts outran a forecast
 
   std::uint64_t all_evaluations() const;
 };
@@ -45,15 +44,15 @@ class Controller final : public StepPolicy {
  public:
   explicit Controller(const Scene& scene) : scene_(scene), bounds_(scene) {}
   void begin(const State& state) override { bounds_.remember(state); }
-  double next_step(State& state) override;
+  double next_step(State& state, const Schedule& schedule) override;
   const ControllerLog& log() const { return log_; }
   /// Called after every evaluation, with state.policy as it then is.
   std::function<void(const State&)> on_change;
 
  private:
-  void evaluate(State& state, StepCause cause);
+  void evaluate(State& state, const Schedule& schedule, StepCause cause);
   void choose(State& state);
-  bool still_stands(State& state);
+  bool still_stands(State& state, const Schedule& schedule);
   double free_limit(const State& state) const;
 
   const Scene& scene_;

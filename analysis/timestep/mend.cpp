@@ -4,58 +4,64 @@
 #include <cmath>
 #include <numeric>
 
-#include "timestep/outgrown.hpp"
+#include "timestep/block_ranges.hpp"
 #include "timestep/pressed.hpp"
+#include "timestep/some_grains.hpp"
 
 namespace eg {
 namespace {
 
 constexpr double widest = 1000;  // weight
+constexpr double warm = 0.85;    // of the largest bound: grains that sweeps work on
+constexpr double tight = 0.97;   // of it: grains whose bound is to be exact
+constexpr int most_sweeps = 5;
+constexpr std::size_t patched = 64;  // one in so many grains, and 40, are few
 
 /// Grains that do not fit and those that they touch, with all contacts of either.
 class Patch {
  public:
   Patch(const Scene& scene, const State& state, const std::vector<Index>& grains, double time, bool neighbours)
-      : state_(state), local_(state.grains.size(), no_index) {
-    for (const Index g : grains) take_in(g);
-    inner_ = grains_.size();
-    std::vector<std::size_t> pairs = pairs_of_inner(), walls;
+      : state_(state), some_(state) {
+    for (const Index g : grains) some_.take_in(g);
+    inner_ = some_.grains().size();
+    std::vector<std::size_t> pairs = some_.pairs();
     if (neighbours) {
       for (const std::size_t c : pairs)
-        if (state.policy.bound.weight[c] > 0) take_in(state.contacts.i[c]), take_in(state.contacts.j[c]);
-      inner_ = grains_.size();
-      pairs = pairs_of_inner();
+        if (state.policy.bound.weight[c] > 0) some_.take_in(state.contacts.i[c]), some_.take_in(state.contacts.j[c]);
+      inner_ = some_.grains().size();
+      pairs = some_.pairs();
     }
-    for (std::size_t w = 0; w < state.wall_contacts.size(); ++w)
-      if (is_inner(state.wall_contacts[w].grain)) walls.push_back(w);
-    contacts_ = counted_contacts(scene, state, {pairs, walls}, time);
+    contacts_ = counted_contacts(scene, state, {pairs, some_.walls()}, time);
     make_network();
   }
 
   /// Whether all inner grains stay below the bound, by the weights that they have or what so many sweeps make of them.
-  bool fits(int most_sweeps) {
-    const StandingBound& bound = state_.policy.bound;
+  bool fits(int most_sweeps) { return sweep(most_sweeps, state_.policy.bound.value) <= state_.policy.bound.value; }
+
+  /// Brings the largest bound of an inner grain down to this, or what it comes to at best [1/s²].
+  double sweep(int most_sweeps, double target) {
     const Sides sides(network_);
-    ranges_ = BlockRanges(sides.size());
+    BlockRanges ranges(sides.size());
     std::vector<Index> inner(inner_);
     std::iota(inner.begin(), inner.end(), Index{0});
-    for (int sweep = 0;; ++sweep) {
-      block_ranges(sides, weight_, inner, ranges_);
-      plays_ = plays_of(sides, weight_, motion_);
-      std::vector<bool> open(sides.size(), false);
-      bool all = true;
-      for (const Index g : inner) {
-        const double most = most_below(bound.value, plays_[g]);
-        if (ranges_.high[g] < most || block_is_below(scalar_block(sides, weight_, g), sides.of(g).size(), most))
-          continue;
-        open[g] = true, all = false;
-      }
-      if (all || sweep == most_sweeps) return all;
+    double least = INFINITY;
+    for (std::vector<double> t = weight_;; --most_sweeps) {
+      block_ranges(sides, t, inner, ranges);
+      std::vector<double> bounds = plays_of(sides, t, motion_);
+      double most = 0;
+      for (const Index g : inner) most = std::max(most, bounds[g] += ranges.high[g]);
+      for (const Index g : inner)
+        if (bounds[g] > std::max(target, tight * most))
+          bounds[g] += std::min(0.0, block_upper_bound(scalar_block(sides, t, g), sides.of(g).size()) - ranges.high[g]);
+      most = *std::max_element(bounds.begin(), bounds.begin() + static_cast<std::ptrdiff_t>(inner_));
+      const auto open = [&](Index g) { return bounds[g] > std::max(target, warm * most); };
+      if (most < least) least = most, weight_ = t, bounds_ = bounds;
+      if (least <= target || most_sweeps <= 0) return least;
       for (std::size_t c = 0; c < contacts_.size(); ++c) {
         const Spring& s = network_.springs[c];
-        if (!sides.is_split(c) || s.i >= inner_ || s.j >= inner_ || !(open[s.i] || open[s.j])) continue;
-        const double next = weight_[c] * (ranges_.high[s.j] / ranges_.high[s.i]);
-        if (std::isfinite(next)) weight_[c] = std::clamp(next, 1 / widest, widest);
+        if (!sides.is_split(c) || s.i >= inner_ || s.j >= inner_ || !(open(s.i) || open(s.j))) continue;
+        const double next = t[c] * (ranges.high[s.j] / ranges.high[s.i]);
+        if (std::isfinite(next)) t[c] = std::clamp(next, 1 / widest, widest);
       }
     }
   }
@@ -63,52 +69,26 @@ class Patch {
   void keep(StandingBound& bound) const {
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
       const CountedContact& contact = contacts_[c];
-      if (contact.j == no_index) {
-        bound.wall_direction[contact.entry] = contact.spring.n;
-      } else if (is_inner(contact.i) && is_inner(contact.j)) {
-        bound.weight[contact.entry] = weight_[c];
-        set_direction(bound, contact.entry, contact.spring.n);
-      }
+      if (contact.j != no_index && is_inner(contact.i) && is_inner(contact.j)) bound.weight[contact.entry] = weight_[c];
     }
-    for (std::size_t g = 0; g < inner_; ++g) keep_grain(bound, grains_[g], ranges_.high[g], plays_[g]);
+    for (std::size_t g = 0; g < inner_; ++g) bound.grain[some_.grains()[g]] = bounds_[g];
   }
 
  private:
-  std::vector<std::size_t> pairs_of_inner() const {
-    const auto& list = state_.contacts;
-    std::vector<std::uint8_t> marked(local_.size());
-    for (std::size_t g = 0; g < local_.size(); ++g) marked[g] = local_[g] < inner_;
-    std::vector<std::size_t> pairs;
-    for (std::size_t c = 0; c < list.size(); ++c)
-      if ((marked[list.i[c]] | marked[list.j[c]]) && !list.is_padding(c)) pairs.push_back(c);
-    return pairs;
-  }
-  bool is_inner(Index g) const { return local_[g] < inner_; }
-  void take_in(Index g) {
-    if (local_[g] != no_index) return;
-    local_[g] = static_cast<Index>(grains_.size());
-    grains_.push_back(g);
-  }
+  bool is_inner(Index g) const { return some_.number_of(g) < inner_; }
 
   void make_network() {
     for (const CountedContact& c : contacts_) {
-      take_in(c.i);
-      if (c.j != no_index) take_in(c.j);
+      some_.take_in(c.i);
+      if (c.j != no_index) some_.take_in(c.j);
     }
-    network_.dimension = state_.dimension, network_.rotation = state_.grains.rotates();
-    for (const Index g : grains_) {
-      const Inertia inertia = inertia_of(state_.grains, g);
-      network_.inverse_mass.push_back(inertia.inverse_mass), network_.radius.push_back(inertia.radius);
-      if (network_.rotation) network_.inverse_inertia.push_back(inertia.inverse_inertia);
-    }
+    network_ = some_.network();
     const auto add = [&](Spring s, const SpringMotion& motion, double weight) {
-      s.i = local_[s.i];
-      if (s.j != no_index) s.j = local_[s.j];
+      s.i = some_.number_of(s.i);
+      if (s.j != no_index) s.j = some_.number_of(s.j);
       network_.springs.push_back(s), motion_.push_back(motion), weight_.push_back(weight);
     };
-    for (CountedContact& c : contacts_) {
-      const bool whole = c.j == no_index || (is_inner(c.i) && is_inner(c.j));
-      if (whole) c.motion.turned = direction_error;  // it will count with its present direction
+    for (const CountedContact& c : contacts_) {
       const double t = c.j == no_index ? 0 : state_.policy.bound.weight[c.entry];
       add(c.spring, c.motion, t > 0 ? t : 1.0);
     }
@@ -125,27 +105,43 @@ class Patch {
   }
 
   const State& state_;
-  std::vector<Index> local_;   ///< of every grain: its place in the patch
-  std::vector<Index> grains_;  ///< the inner ones first
-  std::size_t inner_ = 0;
+  SomeGrains some_;        ///< the inner ones first
+  std::size_t inner_ = 0;  ///< how many of them
   std::vector<CountedContact> contacts_;
   Network network_;  ///< a spring a contact, then couples
   std::vector<SpringMotion> motion_;
   std::vector<double> weight_;
-  BlockRanges ranges_{0};
-  std::vector<GrainPlay> plays_;
+  std::vector<double> bounds_;
 };
 
 }  // namespace
 
+bool are_few(const State& state, std::size_t grains) { return grains * patched <= state.grains.size() + patched * 40; }
+
 bool mend(const Scene& scene, State& state, const std::vector<Index>& grains, double time) {
   for (const bool neighbours : {false, true}) {
     Patch patch(scene, state, grains, time, neighbours);
-    if (!patch.fits(neighbours ? 6 : 0)) continue;
+    if (!patch.fits(neighbours ? most_sweeps : 0)) continue;
     patch.keep(state.policy.bound);
     return true;
   }
   return false;
+}
+
+void ease(const Scene& scene, State& state, double time) {
+  StandingBound& bound = state.policy.bound;
+  const double most = bound.grain.empty() ? 0.0 : *std::max_element(bound.grain.begin(), bound.grain.end());
+  for (const double share : {0.8, 0.9, 0.95}) {
+    std::vector<Index> stiff;
+    for (Index g = 0; g < bound.grain.size(); ++g)
+      if (bound.grain[g] > share * most) stiff.push_back(g);
+    if (stiff.empty()) return;  // nothing touches
+    if (!are_few(state, stiff.size())) continue;
+    Patch patch(scene, state, stiff, time, true);
+    patch.sweep(most_sweeps, share * most);
+    patch.keep(bound);
+    return;
+  }
 }
 
 }  // namespace eg

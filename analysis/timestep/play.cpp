@@ -2,16 +2,13 @@
 
 namespace eg {
 
-std::vector<GrainPlay> plays_of(const Sides& sides, const std::vector<double>& t, std::span<const SpringMotion> met) {
+std::vector<double> plays_of(const Sides& sides, const std::vector<double>& t, std::span<const SpringMotion> met) {
   const Network& net = sides.network();
-  std::vector<GrainPlay> grains(sides.size());
+  std::vector<double> grains(sides.size());
   const auto add = [&](Index g, double weight, const Spring& s, const SpringMotion& m) {
     const Inertia inertia = inertia_of(net, g);
-    const Play p =
-        s.couple ? play_of_couple(s.normal, s.tangential, inertia) : play(s.normal, s.tangential, m.reach, inertia);
-    grains[g].turn += weight * p.turn;
-    grains[g].counted += weight * (p.arm + p.turn * m.turned);
-    grains[g].ahead += weight * (p.arm + p.turn * m.turning);
+    grains[g] += weight * (s.couple ? play_of_couple(s.normal, s.tangential, m, inertia)
+                                    : play(s.normal, s.tangential, m, inertia));
   };
   for (std::size_t c = 0; c < t.size(); ++c) {
     const Spring& s = net.springs[c];

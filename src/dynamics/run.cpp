@@ -122,8 +122,8 @@ bool snapshot_due(const State& state, const StageSpec& s, const Progress& before
 }
 
 /// The policy's step, but not beyond what bodies that move freely allow. A fixed step stays as it was ordered.
-double next_step(const Scene& scene, State& state, StepPolicy& policy) {
-  const double dt = policy.next_step(state);
+double next_step(const Scene& scene, State& state, const Engine& engine, StepPolicy& policy) {
+  const double dt = policy.next_step(state, engine.workspace().schedule);
   return scene.timestep.policy == "fixed" ? dt : std::min(dt, body_step_limit(state));
 }
 
@@ -142,9 +142,9 @@ bool run_stages(const Scene& scene, State& state, StepPolicy& policy, const RunO
   std::optional<CellControl> control(std::in_place, scene.stages[state.stage], state, scene.materials.front().density);
   std::optional<BodyControl> bodies(std::in_place, scene, state);
   if (state.step == 0) {  // half a kick, velocities move on to dt/2; the step is chosen knowing how the cell sets out
-    control->set_rate(state, policy.next_step(state));
+    control->set_rate(state, policy.next_step(state, engine.workspace().schedule));
     state.policy = {};
-    engine.kick(next_step(scene, state, policy));
+    engine.kick(next_step(scene, state, engine, policy));
     bodies->drive(state, state.dt);
   }
 
@@ -157,7 +157,7 @@ bool run_stages(const Scene& scene, State& state, StepPolicy& policy, const RunO
     engine.drift();
     state.stage_time += taken;
     engine.set_gravity(gravity_in_force(scene, state));
-    engine.respond(next_step(scene, state, policy), level);
+    engine.respond(next_step(scene, state, engine, policy), level);
     control->set_rate(state, taken);
     bodies->drive(state, state.dt);
     const bool checked = level == TallyLevel::works;

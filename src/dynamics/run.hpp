@@ -12,8 +12,9 @@ class StepPolicy {
   virtual ~StepPolicy() = default;
   /// A run begins, or goes on with this state.
   virtual void begin(const State& /*state*/) {}
-  /// Length of the next step [s], asked after the forces of every step. May keep its plan in state.policy.
-  virtual double next_step(State& state) = 0;
+  /// Length of the next step [s], asked before the forces of every step, `schedule` being that of its lists. May keep
+  /// its plan in state.policy.
+  virtual double next_step(State& state, const Schedule& schedule) = 0;
 };
 
 /// What an observer is shown.

@@ -218,16 +218,14 @@ void visit_plan(Archive& a, P& plan) {
   a.value("policy/lifetime", "-", lifetime);
   a.value("policy/room", "-", room);
   a.value("policy/refreshes", "-", refreshes);
-  auto& [value, step, overlap, weight, wall_overlap, direction, wall_direction, grain, turning] = bound;
+  auto& [value, step, overlap, weight, wall_overlap, grain, usual] = bound;
   a.value("policy/bound", "1/s^2", value);
   a.value("policy/bound_step", "s", step);
+  a.value("policy/usual_overlap", "m", usual);
   a.array("policy/allowed_overlap", "m", overlap);
   a.array("policy/weight", "-", weight);
   a.array("policy/wall_allowed_overlap", "m", wall_overlap);
-  a.array("policy/direction", "-", direction);
-  a.array("policy/wall_direction", "-", wall_direction);
   a.array("policy/grain_bound", "1/s^2", grain);
-  a.array("policy/turning", "1/s^2", turning);
 }
 
 template <class Archive, class F>

@@ -110,10 +110,7 @@ void check_plan(const Check& check, const State& state) {
   check.length("policy/allowed_overlap", bound.overlap.size(), state.contacts.size());
   check.length("policy/weight", bound.weight.size(), state.contacts.size());
   check.length("policy/wall_allowed_overlap", bound.wall_overlap.size(), state.wall_contacts.size());
-  check.length("policy/direction", bound.direction.size(), 3 * state.contacts.size());
-  check.length("policy/wall_direction", bound.wall_direction.size(), state.wall_contacts.size());
   check.length("policy/grain_bound", bound.grain.size(), state.grains.size());
-  check.length("policy/turning", bound.turning.size(), state.grains.size());
 }
 
 }  // namespace

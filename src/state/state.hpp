@@ -88,10 +88,8 @@ struct StandingBound {
   std::vector<double> overlap;  ///< up to which a pair is counted [m]; 0: not at all, infinite for padding
   std::vector<double> weight;   ///< t of the pair, 0 where it was not counted
   std::vector<double> wall_overlap;
-  std::vector<float> direction;      ///< n of the pair as it was counted, blocks [component][lane]; 0: not counted
-  std::vector<Vec3> wall_direction;  ///< n of a wall contact as it was counted; 0: not counted
-  std::vector<double> grain;    ///< bound of λmax(S_i) of every grain with all pairs at what they are allowed [1/s²]
-  std::vector<double> turning;  ///< what it grows by for every unit by which directions of its contacts are off [1/s²]
+  std::vector<double> grain;  ///< bound of λmax(S_i) of every grain with all pairs at what they are allowed [1/s²]
+  double usual = 0;           ///< half of what pairs are allowed on average [m]
 };
 
 /// What the step policy has planned; part of the state so that a resumed run goes on alike.

@@ -88,10 +88,7 @@ eg::State scrambled_state() {
   s.policy.bound.overlap.resize(19);
   s.policy.bound.weight.resize(19);
   s.policy.bound.wall_overlap.resize(3);
-  s.policy.bound.direction.resize(57);
-  s.policy.bound.wall_direction.resize(3);
   s.policy.bound.grain.resize(30);
-  s.policy.bound.turning.resize(30);
   Scramble scramble;
   eg::visit_state(scramble, s);
   s.contacts.chunk_begin = {0, 8, 19};
