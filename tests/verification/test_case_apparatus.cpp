@@ -1,4 +1,6 @@
 // The cases of the laboratory, with grains twice as large and so an eighth of their number.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -41,19 +43,28 @@ TEST(PlaneStrain, ReducedCalibrationPeaksAndDilates) {
   EXPECT_GT(e.back(), densest + 5e-3);
 }
 
+// The middle of all rows of two specimens: now and then one slips at once, and its rings are flung.
 TEST(SimpleShear, ReducedRingsAreInBalanceWhileGrainsSlide) {
-  const CaseRun run("simple_shear_rings",
-                    "--set specimen.scale=2 --set specimen.count=1200 --set stage[4].until.displacement=8e-4");
-  ASSERT_TRUE(run.complete());
-  const auto balance = run.column("ring_resultant_share"), sliding = run.column("sliding_fraction"),
-             shear = run.column("cap_force_x"), moved = run.column("cap_moved_x"), stage = run.column("stage");
-  double share = 0, rows = 0;
-  for (std::size_t k = 0; k < stage.size(); ++k)
-    if (stage[k] == 4 && moved[k] > 2e-4) share += balance[k], rows += 1;  // once they have begun to move
-  EXPECT_LT(share / rows, 1e-2);
-  EXPECT_GT(sliding.back(), 0.3);
-  EXPECT_LT(shear.back(), 0);  // the grains hold the cap back
-  EXPECT_NEAR(run.column("cap_stress").back(), 50e3, 0.05 * 50e3);
+  std::vector<double> shares;
+  for (const int seed : {1, 2}) {
+    const CaseRun run(
+        "simple_shear_rings",
+        fmt::format(
+            "--set specimen.scale=2 --set specimen.count=1200 --set stage[4].until.displacement=8e-4 --set seed={}",
+            seed));
+    ASSERT_TRUE(run.complete());
+    const auto balance = run.column("ring_resultant_share"), sliding = run.column("sliding_fraction"),
+               shear = run.column("cap_force_x"), moved = run.column("cap_moved_x"), stage = run.column("stage");
+    for (std::size_t k = 0; k < stage.size(); ++k)
+      if (stage[k] == 4 && moved[k] > 2e-4) shares.push_back(balance[k]);  // once they have begun to move
+    EXPECT_GT(sliding.back(), 0.3);
+    EXPECT_LT(shear.back(), 0);  // the grains hold the cap back
+    EXPECT_NEAR(run.column("cap_stress").back(), 50e3, 0.05 * 50e3);
+  }
+  ASSERT_GT(shares.size(), 40u);
+  const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
+  std::ranges::nth_element(shares, middle);
+  EXPECT_LT(*middle, 1e-2);
 }
 
 }  // namespace
