@@ -194,7 +194,6 @@ bool StandingBounds::mend_few(State& state, std::vector<Index>& grains, double t
 }
 
 StandingCheck StandingBounds::check(State& state, const Schedule& schedule, double time, double slack) {
-  StandingBound& bound = state.policy.bound;
   look_at_all(scene_, state, {time, slack}, schedule, look_);
   StandingCheck result;
   result.mended = look_.open.size();
